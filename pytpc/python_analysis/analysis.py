@@ -1,4 +1,4 @@
-"""One link unit of Python, analysed: the passes in their order, and their result as a LinkUnit."""
+"""The analysis of one link unit of Python: the passes in order, and their result as a LinkUnit."""
 
 from __future__ import annotations
 
@@ -42,14 +42,14 @@ from pytpc.static.link_unit import (
     Tool,
 )
 
-# Of the keys of comparisons, which the passes make in the same way.
+# The passes make the keys of comparisons in the same namespace.
 _NAMESPACE = uuid.UUID("6b0f7a52-2c9e-4d61-9a37-8f15c3405ed8")
 _AT_MOST = 200
 
 
 @dataclass
 class Analysed:
-    """All that was worked out of a link unit."""
+    """The results of all passes on a link unit."""
 
     program: Program
     rules: Rules
@@ -89,22 +89,22 @@ def analyse_entry(
 ) -> LinkUnit:
     """The static information of a script.
 
-    Its status is ``failed`` where the analysis takes longer than ``seconds`` (0: no limit), or ends
-    in an error of its own; no other exception than the following comes out.
+    Its status is ``failed`` if the analysis takes longer than ``seconds`` (0: no limit) or ends in
+    an internal error; it raises no other exception than the one below.
 
     Args:
         entry: which script.
         rules: what reads and what exposes.
-        seconds: time on the wall.
-        on_fault: is told of imported modules that cannot be read or parsed: they are taken for
-            modules of a library, which nothing is known of, and listed as blind spots.
+        seconds: wall-clock time.
+        on_fault: called with imported modules that cannot be read or parsed. The analysis treats
+            them like modules of a library, and lists them as blind spots.
 
     Raises:
         InputError: the script itself cannot be read or parsed.
     """
     program = Program(entry)
     collecting = gc.isenabled()
-    # Everything lives to the end, in millions of cycles: to look for garbage doubles the time.
+    # Everything lives to the end, in millions of cycles; searching for garbage doubles the time.
     gc.disable()
     try:
         with Budget(seconds):
@@ -136,11 +136,11 @@ def _failed(program: Program, rules: Rules, why: str) -> LinkUnit:
 
 
 class Writer:
-    """Writes what was found in the terms of docs/reference/formats.md."""
+    """Writes the results as docs/reference/formats.md describes them."""
 
     def __init__(self, analysed: Analysed) -> None:
         self.all = analysed
-        # To Python a form feed, say, ends no line.
+        # Not `splitlines`: in Python a form feed does not end a line.
         modules = analysed.program.modules
         self._lines = {module.path: module.source.split("\n") for module in modules}
 
@@ -245,7 +245,7 @@ class Writer:
         return comparisons
 
     def _condition(self, found: Found) -> object:
-        """What stands for the condition that a comparison is part of."""
+        """Identifies the condition that a comparison is part of."""
         assert found.predicate is not None
         function = found.at.function
         return function.module.path, function.conditions.get(found.at.node, found.at.node)

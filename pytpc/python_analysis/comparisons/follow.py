@@ -28,8 +28,8 @@ _TAKING = {"get", "pop", "setdefault"}
 class Fact:
     """``at`` has the value of the parameter ``name``, after ``how``.
 
-    ``before`` is the fact that it follows from, ``via`` the store or call that brought it, and
-    ``stack`` the calls by which it came into its function.
+    ``before`` is the fact that it follows from, ``via`` the store or call that brought the value,
+    and ``stack`` the calls by which it came into its function.
     """
 
     at: Instr
@@ -45,7 +45,7 @@ class Fact:
 class Compared:
     """A comparison ``at`` with the operand number ``operand``, or one of the kinds above.
 
-    ``inside``: it is in the library function that ``at`` calls.
+    ``inside``: the library function that ``at`` calls makes the comparison.
     """
 
     at: Instr
@@ -56,7 +56,7 @@ class Compared:
 
 
 class Follower:
-    """Follows values from reads; ``compared`` and ``lost`` are what is found.
+    """Follows values from reads; ``compared`` and ``lost`` are the results.
 
     ``lost``: where a parameter's value is not followed any further.
     """
@@ -226,7 +226,7 @@ class Follower:
         self._unpacked(fact, user)
 
     def _unpacked(self, fact: Fact, call: Instr) -> None:
-        """``f(x, **table)``: each entry comes to the parameter of its name, if it is free."""
+        """``f(x, **table)``: each entry comes to the parameter of its name if that is free."""
         names = getattr(call.data, "names", ())
         if not any(n == "**" and v is fact.at for n, v in zip(names, call.args[1:], strict=True)):
             return
@@ -266,7 +266,7 @@ class Follower:
                     self._named(fact, part, [DYNAMIC])
 
     def _argument(self, fact: Fact, user: Instr, path: str) -> None:
-        """A value that is handed to a function outside the sources."""
+        """A value that is passed to a function outside the sources."""
         if (fact.at, user) in self.flow.points.spread:
             return
         if path in self.rules.comparisons and self._compare_inside(fact, user):
@@ -296,7 +296,7 @@ class Follower:
         self._arithmetic(fact, user, how)
 
     def _compare_inside(self, fact: Fact, call: Instr) -> bool:
-        """A comparison inside of a library function; True where its result is the outcome."""
+        """A comparison inside a library function; true where the function returns the outcome."""
         if call not in self._inside:
             self._inside[call] = compared_inside(self.flow, call)
         is_outcome = False
@@ -351,7 +351,7 @@ class Follower:
                 ]
 
     def _drop_measured(self) -> None:
-        """What is measured, and cut to a parameter, is measured: no threshold is lost there."""
+        """A measurement that is clamped to a parameter is still one: nothing is lost there."""
         for call, fact in list(self.lost.items()):
             for place, inside in self._inside.get(call, {}).items():
                 is_bound = call.args[1 + place] is fact.at

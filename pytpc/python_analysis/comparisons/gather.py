@@ -1,4 +1,4 @@
-"""The threshold predicate comparisons: what the two ways, forward and backward, agree on."""
+"""The threshold predicate comparisons: those that both ways, forward and backward, lead to."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ _ALL_KINDS = 3
 
 
 Span = tuple[tuple[int, int], tuple[int, int]]
-"""Line and column of the first character and of the one behind the last, from 1."""
+"""Line and column of the first character, and of the one after the last, from 1."""
 
 
 @dataclass
 class Found:
-    """A comparison with one parameter: at one place of the source, for all its copies in blocks.
+    """A comparison with one parameter at one place of the source, for all its copies in blocks.
 
-    Of one with a constant ``parameter`` is its name, and there are no ``facts``.
+    For a comparison with a constant, ``parameter`` is the constant's name and ``facts`` is empty.
     """
 
     at: Instr
@@ -59,7 +59,7 @@ class Found:
 
     @property
     def threshold(self) -> Instr:
-        """What the parameter's value is compared as."""
+        """The value that is the threshold."""
         if self.inside is not None:
             return self.at.args[1 + INSIDE - self.operand]
         return self.at.args[self.operand] if self.operand >= 0 else self.at
@@ -82,7 +82,7 @@ class Found:
 
 
 def position(instr: Instr) -> tuple[int, int]:
-    """Line and column from 1; 0 where there is none."""
+    """Line and column from 1; 0 where the instruction has none."""
     return _start(instr.node)
 
 
@@ -109,7 +109,7 @@ def _end(node: ast.AST) -> tuple[int, int]:
 
 
 class Gatherer:
-    """Joins comparisons of one place, and drops those that are none of a parameter."""
+    """Joins the comparisons of each place, and drops those whose threshold is not a parameter."""
 
     def __init__(self, follower: Follower, found: Slice) -> None:
         self.follower = follower
@@ -143,11 +143,11 @@ class Gatherer:
         return exposed, others
 
     def constants(self, candidates: Iterable[Found], taken: Iterable[Found]) -> list[Found]:
-        """Of comparisons with constants those that decide something exposed.
+        """The comparisons with constants that decide something exposed.
 
         Args:
             candidates: all of them.
-            taken: the comparisons with parameters, which count as those alone.
+            taken: the comparisons with parameters, which count only as such.
         """
         with_parameter = {each.at.node for each in taken}
         return [
@@ -174,9 +174,9 @@ class Gatherer:
         return True
 
     def _is_measured(self, compared: Compared, both: set[Instr]) -> bool:
-        """True where the parameter is only one of the things that the operand may be.
+        """True where the operand may be a parameter, and may be something else.
 
-        What may be something measured is the threshold only where the other side is measured, too.
+        An operand that may be measured is the threshold only if the other side is measured, too.
         """
         stack = compared.fact.stack
         if compared.inside is not None:
@@ -192,10 +192,10 @@ class Gatherer:
         return other <= {"const"} or (compared.at in both and "other" not in other)
 
     def kinds(self, instr: Instr, stack: Stack) -> frozenset[str]:
-        """What a value may come from, in a function called by ``stack``.
+        """Where a value may come from, in a function that ``stack`` calls.
 
         Returns:
-            Of ``param``, ``const`` and ``other`` those that are possible.
+            Those of ``param``, ``const`` and ``other`` that are possible.
         """
         way = (instr, stack)
         if way not in self._kinds:
@@ -215,7 +215,7 @@ class Gatherer:
         return self._kinds[way]
 
     def _step(self, instr: Instr, stack: Stack) -> tuple[set[str], list[tuple[Instr, Stack]]]:
-        """What a value is by itself, and the values that it may come from."""
+        """What a value is itself, and the values that it may come from."""
         facts = self.follower.facts.get(instr, ())
         if any(fact.before is None or fact.before.name != fact.name for fact in facts):
             return {"param"}, []
@@ -248,7 +248,7 @@ class Gatherer:
         return self.follower.flow.points.calls.given.get((stack[-1], param), [])
 
     def _computes(self, instr: Instr) -> bool:
-        """True for a call that makes a value of its arguments alone: ``abs``, ``max``."""
+        """True for a call whose result depends on its arguments alone: ``abs``, ``max``."""
         flow = self.follower.flow
         paths = flow.points.calls.outside.get(instr, {})
         return any(path in self.follower.rules.arithmetic for path, _ in paths)
@@ -275,7 +275,7 @@ def find_constants(follower: Follower) -> list[Found]:
 
 
 def _constant(instr: Instr, operand: int, constants: Constants) -> str | None:
-    """The name of the constant that one operand is, where the other is none."""
+    """The name of the constant that is one operand, if the other operand is not a constant."""
     threshold, other = instr.args[operand], instr.args[1 - operand]
     number = constants.number(threshold)
     values = constants.values(threshold)

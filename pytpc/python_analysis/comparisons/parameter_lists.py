@@ -1,8 +1,8 @@
-"""Lists of parameter objects: what ``get_parameters`` returns, and what a callback is handed.
+"""Lists of parameter objects: results of ``get_parameters``, and arguments of callbacks.
 
-Their elements are reads where their value is taken. The name is that with which the element's name
-is compared (``if p.name == "limit": self.limit = p.value``), else that at its place in the list
-that was asked for; where neither is known, it is ``<dynamic>``.
+An element is a read where the program takes its value. Its name is the one that it is compared with
+(``if p.name == "limit": self.limit = p.value``), else the one at its place in the list of requested
+names; where neither is known, it is ``<dynamic>``.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class TakenValue:
 
 
 class ParameterLists:
-    """Finds the elements of lists, and the names of those whose value is taken."""
+    """Finds the elements of lists whose value is taken, and their names."""
 
     def __init__(self, constants: Constants) -> None:
         self._constants = constants
@@ -32,11 +32,11 @@ class ParameterLists:
         self._control: dict[Function, dict[Block, list[Block]]] = {}
 
     def taken(self, start: Instr, names: list[str]) -> Iterator[TakenValue]:
-        """The values that are taken of the elements of the list ``start``.
+        """The values that the program takes from elements of the list ``start``.
 
         Args:
-            start: what has the list.
-            names: of its elements in order; empty where they are not known.
+            start: the instruction with the list.
+            names: the names of its elements in order; empty where they are not known.
         """
         elements = self._elements(start)
         values = self._flow.points.rules.values
@@ -48,7 +48,7 @@ class ParameterLists:
                         yield from (TakenValue(name, value) for name in known)
 
     def named(self, asked: Instr) -> list[str]:
-        """The names in a list of names, or of tuples that begin with one."""
+        """The names in a list of names, or of tuples that begin with a name."""
         found: list[str] = []
         for each in self._flow.points.of(asked):
             if each.kind != "container" or each.site is None or each.site.op != "build":
@@ -99,7 +99,7 @@ class ParameterLists:
         return list(dict.fromkeys(names)) or [DYNAMIC]
 
     def _compared(self, attr: Instr, elements: dict[Instr, int | None]) -> str | None:
-        """The constant that the element's name is equal to where ``attr`` is run."""
+        """The constant that the element's name is equal to where ``attr`` runs."""
         function = attr.function
         if function not in self._control:
             self._control[function] = control_dependence(function)

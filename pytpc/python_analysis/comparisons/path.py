@@ -1,4 +1,4 @@
-"""The way of a comparison in the source's words: from the first read to what is exposed."""
+"""The path of a comparison in the words of the source: from the first read to the exposing one."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def path_of(
     """The steps of docs/reference/formats.md, one for each line.
 
     Args:
-        found: a comparison with a parameter, that decides something exposed.
+        found: a comparison with a parameter that decides something exposed.
         within: the slice.
         source: gives the text of a line of an instruction's file.
     """
@@ -135,7 +135,7 @@ def _to_exposing(found: Found, within: Slice) -> list[_Event]:
 
 
 def _merged(events: list[_Event], source: Callable[[Instr, int], str | None]) -> list[PathStep]:
-    """One step for each line, by the most telling of what happens there."""
+    """One step for each line; of several events on a line it has the most telling one."""
     groups: list[list[_Event]] = []
     for event in events:
         line = (event.at.function.module, position(event.at)[0])

@@ -46,7 +46,7 @@ class Exposed:
 
 
 def argument(given: list[Given], where: Argument) -> Instr | None:
-    """The argument of a call that a rule names; None where it is not given."""
+    """The argument of a call that a rule names; None where the call does not give it."""
     for keyword, value in given:
         if keyword is not None and keyword == where.keyword:
             return value
@@ -61,7 +61,7 @@ def argument(given: list[Given], where: Argument) -> Instr | None:
 
 
 def find_reads(flow: Flow, constants: Constants, rules: Rules) -> list[Read]:
-    """All reads, in the order of the program; one for each name that a call may read."""
+    """All reads in the order of the program, one for each name that a call may read."""
     found: list[Read] = []
     lists = ParameterLists(constants)
     for instr, paths in flow.points.calls.outside.items():
@@ -85,7 +85,7 @@ def _read(
     names = [DYNAMIC] if name is None else constants.names(name)
     if name is None or (len(names) == 1 and DYNAMIC not in names[0]):
         return [_made(each, path, instr, _default(constants, default), ((),)) for each in names]
-    # The name is an argument of the function that reads: each call of it reads its own.
+    # The name is an argument of the function that reads: each of its calls reads another name.
     found: dict[tuple[str, Default], list[Stack]] = {}
     for stack, known in _contexts(constants, instr.function, _DEEPEST):
         with constants.where(known):
@@ -103,7 +103,7 @@ def _made(name: str, path: str, instr: Instr, value: Default, stacks: tuple[Stac
 
 
 def _contexts(constants: Constants, function: Function, depth: int) -> list[Context]:
-    """The ways on which ``function`` is called, and what its parameters are on each."""
+    """The chains of calls of ``function``, each with the values that its parameters have then."""
     calls = constants.flow.points.calls
     found: list[Context] = []
     for site in calls.callers.get(function, ()) if depth else ():
@@ -140,7 +140,7 @@ def _configs(flow: Flow, path: str, given: list[Given], rules: Rules) -> list[Re
 
 
 def _handed(flow: Flow, callback: Instr | None, place: int) -> Iterator[Instr]:
-    """The parameter of a callback that is handed the argument number ``place``."""
+    """The parameter of a callback that gets the argument number ``place``."""
     for each in flow.points.of(callback) if callback is not None else ():
         params = each.function.param_instrs if each.function is not None else []
         number = place + (1 if each.kind == "method" else 0)
@@ -179,7 +179,7 @@ def find_exposing(flow: Flow, constants: Constants, rules: Rules) -> list[Expose
 
 
 def _unresolved(flow: Flow) -> list[Instr]:
-    """``x.publish(...)`` where nothing is known of ``x``: what else would it be."""
+    """``x.publish(...)`` where nothing is known of ``x`` is taken for an exposing statement."""
     return [
         instr
         for instr in flow.points.program.instructions()
@@ -193,7 +193,7 @@ def _unresolved(flow: Flow) -> list[Instr]:
 def _answers(
     flow: Flow, instr: Instr, path: str, constants: Constants, rules: Rules
 ) -> list[Exposed]:
-    """What a service's handler returns."""
+    """What the handler of a service returns."""
     callback = argument(CallTable.arguments(instr), rules.services[path])
     topic = _topic_of(instr, path, constants, rules)
     found = []

@@ -1,7 +1,7 @@
-"""Calls of functions that raise: where the exception may go on.
+"""Calls of functions that raise: where the exception may go.
 
-A call through which a ``raise`` of the sources may come ends its block; its further successors are
-the handlers that may take the exception, and the function's exit.
+A call through which a ``raise`` of the sources may come ends its block. Its further successors are
+the handlers that may catch the exception, and the function's exit.
 """
 
 from __future__ import annotations
@@ -11,13 +11,13 @@ from pytpc.python_analysis.ir.instructions import Block, Function, Instr
 from pytpc.python_analysis.points_to.points_to import PointsTo
 
 Name = str | None
-"""The name of an exception's class; None where it is not known."""
+"""The name of an exception's class; None where it is unknown."""
 Leaving = dict[Function, dict[Instr, None]]
 """A function -> the ``raise`` statements and calls by which exceptions leave it."""
 
 
 def add_raising_calls(points: PointsTo) -> Leaving:
-    """Work out which calls raise, and split blocks behind them."""
+    """Find the calls that raise, and split their blocks behind them."""
     leaving: Leaving = {}
     names: dict[Function, dict[Name, None]] = {}
     calls = [

@@ -1,4 +1,4 @@
-"""Where values go and where they come from: copies, through variables, fields and calls."""
+"""Where values go and come from: copies through variables, fields and calls."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _DEEPEST = 3
 
 
 class Flow:
-    """Ways of values in a program, forward (``users``, ``copies``) and backward (``sources``)."""
+    """The flow of values in a program: forward (``users``, ``copies``), backward (``sources``)."""
 
     def __init__(self, points: PointsTo) -> None:
         self.points = points
@@ -39,7 +39,7 @@ class Flow:
                 self._seen_by.setdefault(store, []).append(load)
 
     def _escaping(self) -> set[Instr]:
-        """Loads whose value is used for more than an attribute: others may look at the object."""
+        """Loads that are used for more than an attribute: other code may read the object."""
         return {
             load
             for loads in self.loads_of.values()
@@ -76,8 +76,8 @@ class Flow:
 
         Yields:
             The instruction, the store or call that brings the value there (None: neither), and the
-            calls by which it is there. What goes through a field, or a variable of several
-            functions, forgets them.
+            calls by which it is there. A field, or a variable of several functions, forgets the
+            calls.
         """
         for to, via in self.copies(value):
             after = self._after(value, to, via, stack)
@@ -122,7 +122,7 @@ class Flow:
                         yield load, user
 
     def _open_writer(self, field: Field, value: Instr) -> Instr | bool | None:
-        """What writes ``value`` into ``field``; False where nobody else sees it."""
+        """The instruction that writes ``value`` into ``field``; False where none else sees it."""
         writers = [each for each in self.points.writers.get(field, ()) if value in each.args]
         for writer in writers:
             if writer not in self.reaching.hidden:
@@ -130,7 +130,7 @@ class Flow:
         return False if writers else None
 
     def _found_in(self, field: Field) -> Iterator[Instr]:
-        """The instructions that read a field, through fields that are copies of it."""
+        """The instructions that read a field, also through fields that are copies of it."""
         seen = {field}
         waiting = [field]
         while waiting:
@@ -145,7 +145,7 @@ class Flow:
     # Backward
 
     def sources(self, instr: Instr) -> Iterator[Instr]:
-        """What brought the value of ``instr`` there: stores, arguments, what was returned."""
+        """What brought the value of ``instr`` there: stores, arguments, results."""
         if instr.op == "load" and isinstance(instr.data, Variable):
             yield from self._stores(instr, instr.data)
             return
@@ -205,7 +205,7 @@ class Flow:
                     waiting.append(before)
 
     def writers(self, field: object) -> Iterator[Instr]:
-        """What writes a field, and the fields that are copied into it."""
+        """What writes a field, or a field that is copied into it."""
         seen = {field}
         waiting = [field]
         while waiting:
@@ -219,9 +219,10 @@ class Flow:
                     waiting.append(before)
 
     def is_by_unknown_name(self, attr: Instr, writer: Instr | None) -> bool:
-        """True where ``writer`` sets attributes whose names are not known, and this one has a name.
+        """True where ``writer`` sets attributes by unknown names, but ``attr`` is also set by name.
 
-        What is set by its name, to more than a constant as default, is taken to stay that.
+        An attribute that is set by its name, to more than a constant default, is taken to keep that
+        value.
         """
         name = str(attr.data)
         points = self.points
@@ -245,7 +246,7 @@ class Flow:
         return any(user.op == "call" and user.args[0] is attr for user in users)
 
     def objects(self, instr: Instr) -> list[Obj]:
-        """The objects that a value may be, of a local variable those that are stored before."""
+        """The objects that a value may be; for a local variable, those that were stored before."""
         if instr.op == "load" and instr in self.reaching.stores:
             closed = instr not in self.reaching.open or not getattr(instr.data, "shared", True)
             stores = self.reaching.stores[instr]
@@ -258,7 +259,7 @@ class Flow:
         return list(self.points.of(instr))
 
     def _before(self, writer: Instr, owner: Obj, user: Instr) -> bool:
-        """False where ``writer`` is known to write another object than ``user`` uses, or later."""
+        """False where ``writer`` writes another object than ``user`` uses, or writes later."""
         if writer.op in ("setattr", "setitem"):
             named = writer.args[0]
             if owner in self.points.of(named) and owner not in self.objects(named):
@@ -277,7 +278,7 @@ class Flow:
 
         Args:
             instr: the value.
-            user: the instruction for which it is asked.
+            user: the instruction that uses it.
         """
         seen: dict[Obj, None] = {}
         waiting = self.objects(instr)
@@ -295,7 +296,7 @@ class Flow:
 
 
 def _is_literal(value: Instr) -> bool:
-    """True for what stands in the source as a constant, also ``-4.0`` and ``(1, 2)``."""
+    """True for a constant of the source, also ``-4.0`` and ``(1, 2)``."""
     if value.op in ("unary", "binary", "build"):
         return all(map(_is_literal, value.args))
     return value.op == "const"

@@ -1,7 +1,7 @@
-"""A Python function as blocks of instructions: what the analyses of this room work on.
+"""A Python function as blocks of instructions, which the analyses of this room work on.
 
 Every subexpression is one instruction and stands for its own value. Conditions are branches at the
-end of a block, one for each operand of ``and``, ``or`` and ``not`` and each link of a chain.
+end of a block, one for each operand of ``and``, ``or`` and ``not`` and for each link of a chain.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 class Variable:
     """A name of a function (or of a module, whose body is a function).
 
-    ``shared``: another function than ``owner`` uses it.
+    ``shared``: a function other than ``owner`` uses it.
     """
 
     name: str
@@ -81,10 +81,10 @@ class Instr:
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """How the arguments of a call stand: keywords by name, ``*`` and ``**`` for unpacked ones.
+    """The form of a call's arguments: keywords by name, ``*`` and ``**`` for unpacked ones.
 
-    ``names`` has one entry for each argument: None for a positional one. ``decorates``: the call
-    of a decorator.
+    ``names`` has one entry for each argument: None for a positional one. ``decorates``: it is the
+    call of a decorator.
     """
 
     names: tuple[str | None, ...]
@@ -93,7 +93,7 @@ class Shape:
 
 @dataclass(frozen=True, slots=True)
 class Handler:
-    """An ``except``; ``names`` are the classes that it names, None where it takes all."""
+    """An ``except``; ``names`` are the classes that it names, None where it catches everything."""
 
     block: Block
     names: tuple[str, ...] | None
@@ -103,8 +103,8 @@ class Handler:
 class Block:
     """Instructions that run one after another.
 
-    ``handlers`` are where an exception in it may go on, the innermost first;
-    ``opened`` is, for the first block of a handler, the block in which its ``try`` begins.
+    ``handlers``: where an exception in it may go, the innermost first. ``opened``: for the first
+    block of a handler, the block in which its ``try`` begins.
     """
 
     function: Function
@@ -140,8 +140,8 @@ def reachable(
 class Function:
     """A function, a lambda, or the body of a module (``<module>``).
 
-    ``defaults``: the number of a parameter -> that of its default among the defaults.
-    ``conditions``: an expression -> the whole condition that it is an operand of.
+    ``defaults``: the number of a parameter -> the number of its default. ``conditions``: an
+    expression -> the whole condition that it is part of.
     """
 
     qualname: str
@@ -162,7 +162,7 @@ class Function:
     conditions: dict[ast.AST, ast.AST] = field(default_factory=dict)
 
     def instructions(self) -> Iterator[Instr]:
-        """All of them, block by block."""
+        """All instructions, block by block."""
         for block in self.blocks:
             yield from block.instrs
 
@@ -201,4 +201,4 @@ class Module:
 
 
 ANY = object()
-"""A key that is not known."""
+"""An unknown key."""

@@ -23,7 +23,7 @@ _MARKING = ("property", "staticmethod", "classmethod", "setter", "getter", "cach
 
 
 def lower_module(module: Module, resolve: Resolver, numbers: list[int]) -> None:
-    """Fill in the functions of ``module``, its body the first of them."""
+    """Fill in the functions of ``module``; its body is the first."""
     body = Function("<module>", module, module.tree)
     module.body = body
     waiting = [(body, Scope(body, names_of(module.tree.body), None))]
@@ -175,7 +175,7 @@ class Lowering(StatementLowering):
         self.block = after
 
     def _pattern(self, pattern: ast.pattern, subject: Instr, no: Block) -> None:
-        """Test and bind; go on in the current block where it matches, else at ``no``."""
+        """Test and bind; continue in the current block where it matches, else at ``no``."""
         match pattern:
             case ast.MatchValue(value=value):
                 known = isinstance(value, ast.Constant | ast.UnaryOp | ast.BinOp)
@@ -232,7 +232,7 @@ class Lowering(StatementLowering):
             self._pattern(inner, self.emit("attr", inner, subject, data=name), no)
 
     def _test(self, pattern: ast.pattern, subject: Instr, no: Block) -> None:
-        """What a pattern asks of the subject itself decides as a ``switch`` does."""
+        """A pattern's own test of the subject is a predicate, like a ``switch``."""
         outcome = self.emit("match", pattern, subject)
         self._go_on(outcome, pattern, no)
 

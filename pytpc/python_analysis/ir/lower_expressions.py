@@ -12,16 +12,16 @@ from pytpc.python_analysis.ir.scopes import Names
 
 Comprehension = ast.ListComp | ast.SetComp | ast.GeneratorExp | ast.DictComp
 UNROLLED = 24
-"""A loop over at most so many constants is taken apart."""
+"""Loops over at most this many constants are unrolled."""
 
 
 class ExpressionLowering(Builder):
-    """Lowers the expressions of one function; statements are its subclass's."""
+    """Lowers the expressions of one function; its subclass lowers statements."""
 
     # Conditions
 
     def condition(self, node: ast.expr, yes: Block, no: Block) -> None:
-        """Evaluate ``node`` and go on at ``yes`` or ``no``."""
+        """Evaluate ``node`` and continue at ``yes`` or ``no``."""
         for part in ast.walk(node):
             self.function.conditions.setdefault(part, node)
         match node:
@@ -66,7 +66,7 @@ class ExpressionLowering(Builder):
         return self._joined(variable, after, node)
 
     def _joined(self, variable: Variable, after: Block, node: ast.expr) -> Instr:
-        """The value that the branches have stored in ``variable``, in the block ``after`` them."""
+        """The value that the branches stored in ``variable``, in the block ``after`` them."""
         self.jump(after)
         self.block = after
         return self.emit("load", node, data=variable)
@@ -108,7 +108,7 @@ class ExpressionLowering(Builder):
         if lower is not None:
             found: Instr = lower(node)
             return found
-        # A form of a later Python: its parts are evaluated, its value is not known.
+        # A form of a later Python: its parts are evaluated, its value is unknown.
         parts = [
             self.value(part) for part in ast.iter_child_nodes(node) if isinstance(part, ast.expr)
         ]
@@ -163,7 +163,7 @@ class ExpressionLowering(Builder):
         return self.emit("call", node, function, *values, data=Shape(tuple(names)))
 
     def _super(self, node: ast.Call) -> Instr:
-        """``super()`` knows its class and object from where it stands."""
+        """``super()`` takes its class and object from its place."""
         function = self.emit("external", node.func, data="builtins.super")
         first = self.function.parameters[:1]
         args = [self.emit("load", node, data=variable) for variable in first]
@@ -193,7 +193,7 @@ class ExpressionLowering(Builder):
     _value_List = _value_Set = _value_Tuple
 
     def put(self, container: Instr, key: Instr | None, value: Instr, node: ast.AST) -> None:
-        """Store into a container; without ``key`` somewhere."""
+        """Store into a container, without ``key`` at an unknown place."""
         where = key if key is not None else self.emit("const", node, data=ANY)
         self.emit("setitem", node, container, where, value)
 
@@ -239,7 +239,7 @@ class ExpressionLowering(Builder):
         return self.make_function(node, "<lambda>", node.args, Names())
 
     def _value_ListComp(self, node: Comprehension) -> Instr:
-        """The loops of a comprehension stand in the function itself, with names of their own."""
+        """The loops of a comprehension are part of the function, with variables of their own."""
         kinds = {"DictComp": "dict", "SetComp": "set"}
         built = self.emit("build", node, data=kinds.get(type(node).__name__, "list"))
         after = self.new_block()
@@ -298,12 +298,12 @@ class ExpressionLowering(Builder):
         self._generate(node, rest, built, after)
 
     def _fresh(self, target: ast.expr) -> dict[str, Variable | object]:
-        """A variable of its own for each name in the target of a comprehension."""
+        """A new variable for each name in the target of a comprehension."""
         names = [part.id for part in ast.walk(target) if isinstance(part, ast.Name)]
         return {name: self.temporary() for name in names}
 
     def known_elements(self, target: ast.expr, source: ast.expr) -> list[dict[str, object]] | None:
-        """What the names of ``target`` are, for each element, where all are constants and few."""
+        """The values of ``target`` for each element, where all are constants and few."""
         if any(
             isinstance(part, ast.Name) and part.id in renamed
             for part in ast.walk(source)
@@ -312,7 +312,7 @@ class ExpressionLowering(Builder):
             return None
         return known_elements(target, source, self.module, UNROLLED)
 
-    # What statements give
+    # What statements define
 
     def store_name(self, name: str, value: Instr, node: ast.AST) -> None:
         """Bind a name."""

@@ -17,7 +17,7 @@ from pytpc.python_analysis.sources.source_files import folder_above, module_file
 
 @dataclass(frozen=True)
 class Unread:
-    """A module that is imported and cannot be read or parsed; ``path`` as modules have it."""
+    """An imported module that cannot be read or parsed; ``path`` as in `Module`."""
 
     path: str
     error: InputError
@@ -26,7 +26,7 @@ class Unread:
 class Program:
     """A script and the modules of the workspace that it imports, the script first in ``modules``.
 
-    ``name`` and ``package`` are as in the JSON. ``faults``: the modules that cannot be read.
+    ``name`` and ``package`` are those of the JSON. ``faults``: the modules that cannot be read.
     """
 
     def __init__(self, entry: Entry) -> None:
@@ -40,17 +40,17 @@ class Program:
 
     @property
     def functions(self) -> list[Function]:
-        """Those of all modules."""
+        """The functions of all modules."""
         return [function for module in self.modules for function in module.functions]
 
     @cached_property
     def attributes(self) -> list[str]:
-        """The names of all attributes that are stored into, sorted; for when all is loaded."""
+        """The names of all attributes that are stored, sorted; use it when all is loaded."""
         names = {str(instr.data) for instr in self.instructions() if instr.op == "setattr"}
         return sorted(names)
 
     def instructions(self) -> list[Instr]:
-        """Those of all functions, in order."""
+        """The instructions of all functions, in order."""
         return [instr for function in self.functions for instr in function.instructions()]
 
     def load(self) -> None:
@@ -66,7 +66,7 @@ class Program:
             lower_module(module, self.resolve, self._numbers)
 
     def _relative(self, path: Path) -> str:
-        """A file as static information names it: outside of the package by its absolute path."""
+        """A file as static information names it: by its absolute path outside the package."""
         return str(path.relative_to(self.root) if path.is_relative_to(self.root) else path)
 
     def _add(self, path: Path, name: str, source: str, tree: ast.Module) -> Module:
@@ -76,7 +76,7 @@ class Program:
         return module
 
     def _module(self, path: Path, name: str) -> Module | None:
-        """The module of a file; None, once and for all, where it cannot be parsed."""
+        """The module of a file; None where it cannot be parsed, which is tried once."""
         path = path.absolute()
         if path not in self._known:
             try:
@@ -104,9 +104,9 @@ class Program:
 
 
 def _begun(tree: ast.Module, begin: str) -> ast.Module:
-    """The module with a call of the function ``begin`` at its end, as an entry point calls it.
+    """The module with a call of the function ``begin`` at its end, as for an entry point.
 
-    The call stands where the function's name is bound.
+    The call has the position at which the function's name is bound.
     """
     if not begin:
         return tree

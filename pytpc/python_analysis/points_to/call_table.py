@@ -15,10 +15,10 @@ class CallTable:
     """Who calls whom.
 
     ``callees``: an instruction -> the functions that it runs. ``callers``: the reverse.
-    ``outside``: an instruction -> the dotted names that it calls, each with the object whose method
-    it is. ``given``: a call and a parameter -> the values that it gives to it, its default among
-    them where it gives none. ``registered``: a function -> the calls that hand it to something
-    outside, which may run it later.
+    ``outside``: an instruction -> the dotted names that it calls, each with the object if it is a
+    method. ``given``: a call and a parameter -> the values that the parameter gets, or its default.
+    ``registered``: a function -> the calls that pass it to code outside the sources, which may run
+    it later.
     """
 
     def __init__(self) -> None:
@@ -46,7 +46,7 @@ class CallTable:
             action(value)
 
     def may_unpack(self, site: Instr, param: Instr) -> bool:
-        """True where what ``site`` unpacks may be the value of ``param``: no argument is."""
+        """True where an unpacked argument of ``site`` may be the value of ``param``."""
         return param in self.given.get((site, param), ())
 
     def when_site(self, param: Instr, action: Callable[[Instr], None]) -> None:
@@ -71,7 +71,7 @@ class CallTable:
 def kept_as_given(instr: Instr) -> Instr | None:
     """The parameter of ``__init__`` whose value ``self.name = parameter`` keeps.
 
-    By what is kept so objects of one class are told apart.
+    Objects of one class are distinguished by such values.
     """
     if instr.op != "setattr":
         return None
@@ -84,7 +84,7 @@ def kept_as_given(instr: Instr) -> Instr | None:
 
 
 def unchanged_parameter(value: Instr) -> Instr | None:
-    """The parameter of an ``__init__`` that a value is, where nothing else is stored in it."""
+    """The parameter of ``__init__`` that a value is, if nothing else is stored in it."""
     function = value.function
     if value.op != "load" or value.data not in function.parameters:
         return None

@@ -1,4 +1,4 @@
-"""What a value may be: the abstract objects of the points-to analysis."""
+"""The abstract objects of the points-to analysis."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from dataclasses import dataclass, field
 from pytpc.python_analysis.ir.instructions import ClassInfo, Function, Instr
 
 EVERY = "[+]"
-"""The slot that stands for all elements of a container, where one is read by an unknown key."""
+"""The slot that stands for all elements of a container, for reads by an unknown key."""
 SOME = "[*]"
 """The slot of the elements at unknown keys."""
 UNNAMED = "<unnamed>"
 """The slot of an object's attributes that are set by unknown names."""
 ATTRIBUTES = "<attributes>"
-"""The slot that stands for all of them, where one is read by an unknown name."""
+"""The slot that stands for all attributes, for reads by an unknown name."""
 OTHER = "<other>"
-"""The dotted name of what no rule is about."""
+"""The dotted name of everything without a rule."""
 _DEEPEST = 2
 
 
@@ -24,12 +24,12 @@ _DEEPEST = 2
 class Obj:
     """An abstract object.
 
-    ``kind`` and what ``ref`` and ``parent`` are: ``function`` (Function), ``method`` (Function,
-    the object), ``class`` (ClassInfo), ``instance`` (ClassInfo), ``module`` (Module), ``external``
-    (by ``path``), ``made`` (by calling what is outside the sources: ``path``), ``part`` (an
-    attribute of something made: ``path``, the object), ``container``, ``partial`` (the call that
-    made it, the function), ``super`` (ClassInfo after which is looked up, the object),
-    ``namespace`` (an object's ``__dict__``: the object). ``site`` is the instruction that makes it.
+    ``kind``, and the meaning of ``ref`` and ``parent``: ``function`` (Function), ``method``
+    (Function, the object), ``class`` (ClassInfo), ``instance`` (ClassInfo), ``module`` (Module),
+    ``external`` (by ``path``), ``made`` (by a call of ``path`` outside the sources), ``part`` (an
+    attribute of something made: ``path``, the object), ``container``, ``partial`` (the function),
+    ``super`` (the ClassInfo after which it looks attributes up, the object), ``namespace`` (an
+    object's ``__dict__``: the object). ``site`` is the instruction that makes it.
     """
 
     kind: str
@@ -46,7 +46,7 @@ class Obj:
 
     @property
     def function(self) -> Function | None:
-        """The function that it is, or is bound to."""
+        """The function that it is or is bound to."""
         return self.ref if isinstance(self.ref, Function) else None
 
     @property
@@ -60,7 +60,7 @@ Field = tuple[Obj, str]
 
 
 class Heap:
-    """Makes abstract objects, each once."""
+    """Makes each abstract object once."""
 
     def __init__(self, paths: Iterable[str]) -> None:
         """``paths`` are the dotted names that the rules are about."""
@@ -89,7 +89,7 @@ class Heap:
         return self.get("class", ref=info)
 
     def made(self, path: str, site: Instr) -> Obj:
-        """What something outside the sources gives when it is called at ``site``."""
+        """The object that a call outside the sources returns at ``site``."""
         return self.get("made", path if path in self._about else OTHER, site=site)
 
     def container(self, kind: str, site: Instr) -> Obj:
@@ -112,5 +112,5 @@ class Heap:
 
 
 def element(key: object) -> str:
-    """The slot of an element at a constant key."""
+    """The slot of the element at a constant key."""
     return f"[{key!r}]"

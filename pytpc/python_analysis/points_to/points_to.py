@@ -1,9 +1,8 @@
 """Which objects a value may be, and what a call calls: a points-to analysis with fields.
 
-L. Andersen, "Program Analysis and Specialization for the C Programming Language", 1994, on demand
-of the call graph: constraints are added as functions and classes come to calls. It does not mind
-the order of statements (``reaching`` does), and tells objects of one class apart by where they are
-made.
+L. Andersen, "Program Analysis and Specialization for the C Programming Language", 1994. Constraints
+are added on demand, as calls of functions and classes are found. It ignores the order of statements
+(``reaching`` does not), and distinguishes objects of one class by the place that makes them.
 """
 
 from __future__ import annotations
@@ -20,13 +19,13 @@ from pytpc.python_analysis.rules_file import Rules
 
 _STEPS = 5
 _LEAST_STEPS = 100_000
-"""For each instruction, and in any case: how many steps the analysis may take."""
+"""The number of steps that the analysis may take: for each instruction, and at least."""
 _PLACES = 64
-"""Objects of one class are told apart at so many places where they are made."""
+"""Objects of one class are distinguished at this many places that make them."""
 
 
 class PointsTo(Solver):
-    """The constraints of a program, solved. ``calls``: who calls whom."""
+    """The solved constraints of a program. ``calls``: who calls whom."""
 
     def __init__(self, program: Program, rules: Rules) -> None:
         super().__init__(_LEAST_STEPS + _STEPS * len(program.instructions()))
@@ -56,7 +55,7 @@ class PointsTo(Solver):
     # What is asked
 
     def mro(self, info: ClassInfo) -> list[ClassInfo | str]:
-        """The classes in which attributes are looked up, those outside by their dotted names."""
+        """The classes in which attributes are looked up; those outside by their dotted names."""
         if info not in self._frozen:
             self._frozen[info] = [info]
             order: dict[ClassInfo | str, None] = {info: None}
@@ -81,7 +80,7 @@ class PointsTo(Solver):
         return None
 
     def _complete(self) -> None:
-        """Make an object of each class that nobody is seen to make."""
+        """Make an object of each class that no call makes."""
         for module in self.program.modules:
             for info in module.classes:
                 if not self.instances.get(info):
@@ -89,7 +88,7 @@ class PointsTo(Solver):
         self._solve()
 
     def instantiate(self, info: ClassInfo, site: Instr | None) -> Obj:
-        """An object of a class; all its methods may be called on it."""
+        """An object of a class, all of whose methods may be called."""
         known = self.instances.setdefault(info, {})
         made = self.heap.get("instance", ref=info, site=site)
         if made not in known and len(known) >= _PLACES:
@@ -102,7 +101,7 @@ class PointsTo(Solver):
             if not isinstance(each, ClassInfo):
                 continue
             own = self.heap.class_(each)
-            # What a subclass overrides is run by `super()` alone, which hands the object over.
+            # Only `super()` runs an overridden method, and it passes the object.
             names = [name for name in self.class_names.get(each, ()) if name not in hidden]
             hidden.update(names)
             for name in names:
@@ -180,9 +179,9 @@ class PointsTo(Solver):
         self._keep(owner, param, name, instr)
 
     def _keep(self, owner: Obj, param: Instr, name: str, instr: Instr) -> None:
-        """``self.name = param`` in ``__init__``: objects are told apart by what each is made with.
+        """``self.name = param`` in ``__init__``: the arguments of each call distinguish objects.
 
-        The ``__init__`` of a base class gets it from that of the object's own class.
+        The ``__init__`` of a base class gets them from that of the object's own class.
         """
         info, made = param.function.owner, owner.class_info
         assert owner.site is not None
@@ -265,8 +264,8 @@ class PointsTo(Solver):
             self._outside(owner, name, instr, info)
             return
         field = self.slot(self.heap.class_(found), name)
-        # Functions are bound to the object; all else is as it is in the class, unless the object
-        # has its own.
+        # Functions are bound to the object; other attributes are the class's, unless the object has
+        # its own.
         if not self._is_hidden(info, name):
             self._unbound.add((field, instr))
             self.copy(field, instr)
@@ -287,7 +286,7 @@ class PointsTo(Solver):
         return name in self._always[info]
 
     def _bind(self, found: Obj, owner: Obj, instr: Instr) -> None:
-        """An attribute of a class as one of its object."""
+        """An attribute of a class, read from an object of it."""
         function = found.function if found.kind == "function" else None
         if function is None or "staticmethod" in function.decorators:
             self.add(instr, [found])
@@ -358,7 +357,7 @@ class PointsTo(Solver):
         self._operator(instr, instr.args[0], name, [])
 
     def _operator(self, instr: Instr, value: Instr, name: str, others: list[Instr]) -> None:
-        """The method of an own class that an operator runs."""
+        """Run the method of an own class that an operator calls."""
 
         def run(found: Obj) -> None:
             if found.kind == "instance" and name:
@@ -372,7 +371,7 @@ class PointsTo(Solver):
 
 
 def _variable_of(body: Function, name: str) -> Variable:
-    """The variable of a module that is used as ``module.name``."""
+    """The variable of a module that ``module.name`` means."""
     variable = body.variables.setdefault(name, Variable(name, body))
     variable.shared = True
     return variable

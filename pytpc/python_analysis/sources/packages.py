@@ -19,7 +19,7 @@ OnFault = Callable[[InputError], None]
 
 
 class NameFault(InputError):
-    """A package.xml that cannot be read: the folder's name stands for the package's."""
+    """A package.xml that cannot be read: the package gets the name of its folder."""
 
 
 def entries(
@@ -31,15 +31,15 @@ def entries(
     """The programs that ``path`` means: the script itself, or all nodes of a folder's packages.
 
     Nodes are entry points, programs that a CMakeLists.txt or setup.py installs, scripts with a
-    ``__main__`` guard, and scripts with a shebang that initialise a node; in a folder those alone
-    that have to do with ROS, by themselves or by modules of the workspace that they import.
+    ``__main__`` guard, and scripts with a shebang that initialise a node. In a folder only those
+    count that use ROS, themselves or through modules of the workspace that they import.
 
     Args:
         path: a script, or a folder.
-        on_fault: is told of what cannot be read: of scripts in a folder, which are left out; and,
-            by a `NameFault`, of a package.xml.
-        rules: what reads and exposes; the built-in ones where none are given.
-        beside: further folders, whose packages may be imported from.
+        on_fault: called with scripts of a folder that cannot be read, which are left out, and, by a
+            `NameFault`, with a package.xml that cannot be read.
+        rules: what reads and exposes; by default the built-in rules.
+        beside: further folders with packages that may be imported.
 
     Raises:
         InputError: there is no such file or folder.
@@ -62,7 +62,7 @@ def entry_of(script: Path, on_fault: OnFault | None = None) -> Entry:
 
 
 def _named_apart(found: list[Entry]) -> list[Entry]:
-    """Programs of one package with the same name get their folder into theirs."""
+    """Programs of one package with the same name get their folder into their name."""
     known: dict[tuple[str, str], int] = {}
     for entry in found:
         known[entry.package, entry.name] = known.get((entry.package, entry.name), 0) + 1
@@ -76,7 +76,7 @@ def _named_apart(found: list[Entry]) -> list[Entry]:
 
 @dataclass(frozen=True)
 class _Package:
-    """A package: what installing it makes of its files; ``modules`` as `Entry.packages`."""
+    """A package and what its installation makes of its files; ``modules`` as `Entry.packages`."""
 
     name: str
     root: Path
@@ -86,7 +86,7 @@ class _Package:
 
 
 class _Places:
-    """The packages that are at hand."""
+    """The known packages."""
 
     def __init__(self, on_fault: OnFault | None) -> None:
         self.on_fault = on_fault or (lambda _: None)
@@ -145,7 +145,7 @@ class _Places:
         return Entry(script, name, package.name or name, root, folders, self.modules(package))
 
     def modules(self, package: _Package) -> Mapping[str, Path]:
-        """The modules that a program of ``package`` may import; its own hide all others."""
+        """The modules that a program of ``package`` may import; its own hide the others."""
         found: dict[str, Path] = {}
         for other in (package, *self._known.values()):
             for name, place in other.modules.items():
@@ -154,7 +154,7 @@ class _Places:
 
 
 def _modules(root: Path, setup: Installed) -> Iterator[tuple[str, Path]]:
-    """Dotted name -> place of what installing a package makes importable."""
+    """Dotted name -> place of the modules that installing a package makes importable."""
     if not setup.is_any:
         return
     named = {name: root / place for name, place in setup.folders.items() if name}
@@ -179,7 +179,7 @@ class _Nodes:
         self._scripts = Scripts(rules)
 
     def below(self, folder: Path) -> Iterator[Entry]:
-        """All of them: by package and path."""
+        """All nodes, by package and path."""
         files = list(python_files(folder, self._places.on_fault))
         roots = dict.fromkeys([*package_folders(folder), *map(self._places.root_of, files)])
         declared: set[Path] = set()
@@ -208,7 +208,7 @@ class _Nodes:
         yield from filter(self._scripts.has_to_do_with_ros, programs)
 
     def _not_imported(self, installed: list[Entry], programs: list[Entry]) -> Iterator[Entry]:
-        """Those of the installed scripts that are no modules of the others."""
+        """The installed scripts that no other program imports as a module."""
         imported: set[Path] = set()
         for program in (*programs, *installed) if installed else ():
             imported.update(

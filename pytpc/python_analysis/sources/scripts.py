@@ -1,4 +1,4 @@
-"""Which scripts are nodes: run by themselves, and with something to do with ROS."""
+"""Which scripts are nodes: they are run themselves, and use ROS."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ _LIVING = {"init_node", "init", "spin", "create_node"}
 
 @dataclass(frozen=True)
 class Entry:
-    """A program: the name of its link unit, its package and where modules are looked for.
+    """A program: the name of its link unit, its package and where modules are searched.
 
-    ``folders`` are looked into first; ``packages`` has, by dotted name, the folder (or the file
-    without ``.py``) of each package of the workspace that is installed. An entry point has the name
-    of its ``module`` and the function that is called, ``begin``; a script is ``__main__``.
+    ``folders`` are searched first; ``packages`` has, by dotted name, the folder (or the file
+    without ``.py``) of each package that the workspace installs. An entry point has the name of its
+    ``module`` and of the function that it calls, ``begin``; a script is ``__main__``.
     """
 
     script: Path
@@ -42,7 +42,7 @@ class Entry:
     begin: str = ""
 
     def places(self, name: str) -> Iterator[Path]:
-        """The files that an import of the dotted ``name`` may mean, the first one first."""
+        """The files that an import of the dotted ``name`` may mean, in order."""
         parts = name.split(".")
         for folder in self.folders:
             yield from module_files(folder.joinpath(*parts))
@@ -55,8 +55,8 @@ class Entry:
 def python_files(folder: Path, on_fault: Callable[[InputError], None]) -> Iterator[Path]:
     """The Python scripts and modules below a folder, sorted, each real folder once.
 
-    Left out are hidden folders and those for tests and for what a build makes, unless they are
-    packages, and what colcon leaves out. ``on_fault`` is told of files that cannot be read.
+    Left out are hidden folders, folders for tests and of builds (unless they are packages), and
+    what colcon ignores. ``on_fault`` is called with files that cannot be read.
     """
     seen: set[str] = set()
     for here, below, files in os.walk(folder, followlinks=True):
@@ -86,13 +86,13 @@ def _is_searched(folder: Path) -> bool:
 
 
 def is_python(path: Path) -> bool:
-    """True for a file that ends with ``.py``, or begins with a shebang of Python."""
+    """True for a file that ends with ``.py``, or begins with a Python shebang."""
     return path.suffix == ".py" or _has_shebang(path)
 
 
 def _has_shebang(path: Path) -> bool:
     try:
-        # To open a pipe would wait for who writes into it.
+        # Opening a pipe would wait for a writer.
         if not stat.S_ISREG(path.stat().st_mode):
             return False
         with path.open("rb") as file:
@@ -103,7 +103,7 @@ def _has_shebang(path: Path) -> bool:
 
 @dataclass(frozen=True)
 class _Facts:
-    """What is asked of a source file.
+    """The facts about a source file.
 
     ``imports``: the number of dots and the dotted name of each import. ``words``: all words of its
     text. ``is_guarded``: it has a ``__main__`` guard.
@@ -119,17 +119,17 @@ _NOTHING = _Facts((), frozenset(), False, False)
 
 
 class Scripts:
-    """Tells nodes from other scripts; each file is read once."""
+    """Distinguishes nodes from other scripts; reads each file once."""
 
     def __init__(self, rules: Rules) -> None:
-        """``rules`` say which functions are ROS's."""
+        """``rules`` name the functions of ROS."""
         self._known: dict[Path, _Facts] = {}
         self._faulty: set[Path] = set()
         self._libraries = {"rospy", "rclpy", *(path.split(".")[0] for path in rules.paths)}
         self._words = _LIVING | {path.rsplit(".", 1)[-1] for path in rules.paths}
 
     def is_run(self, program: Entry) -> bool:
-        """True for a script that says by itself that it is run.
+        """True for a script that is made to be run.
 
         Raises:
             InputError: it cannot be read or parsed.
@@ -138,10 +138,10 @@ class Scripts:
         return facts.is_guarded or (facts.initialises and _has_shebang(program.script))
 
     def has_to_do_with_ros(self, program: Entry) -> bool:
-        """True where the program, or a module of the workspace that it imports, speaks to ROS.
+        """True where the program, or a module of the workspace that it imports, uses ROS.
 
-        That is, it imports one of ROS's libraries and has a word of what reads parameters, exposes,
-        makes what exposes, or starts a node.
+        It imports a library of ROS and has a word for reading parameters, for exposing, or for
+        starting a node.
 
         Raises:
             InputError: the script cannot be read or parsed.
@@ -173,7 +173,7 @@ class Scripts:
         return self._known[path]
 
     def _facts(self, path: Path) -> _Facts:
-        """The same; of a file that cannot be read there are none."""
+        """Like `_read`; an unreadable file has no facts."""
         if path in self._faulty:
             return _NOTHING
         try:
@@ -209,7 +209,7 @@ def _facts_of(source: str, tree: ast.Module) -> _Facts:
 
 
 def _statements(body: list[ast.stmt]) -> Iterator[ast.stmt]:
-    """All statements, those within others, too."""
+    """All statements, nested ones included."""
     waiting: list[ast.AST] = [*body]
     while waiting:
         here = waiting.pop()

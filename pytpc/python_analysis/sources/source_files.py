@@ -1,4 +1,4 @@
-"""Source files of Python: their text, their syntax tree, and why there is none."""
+"""Python source files: their text, their syntax tree, and why there is none."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pathlib import Path
 
 from pytpc.base.errors import InputError
 
-# What is no Python 3, line by line, each with what it is called.
+# Lines that are not Python 3, each with a name.
 _PYTHON_2 = [
     (re.compile(r"^[^#'\"]*?(?:^|[\s:;])print\s+(?!=)[\w'\"(%>]"), "print without parentheses"),
     (re.compile(r"^\s*except\s+[\w.()\s,]*\w\s*,\s*\w+\s*:"), "except with a comma"),
@@ -28,7 +28,7 @@ _PYTHON_2 = [
 
 
 def _text(path: Path) -> str:
-    """The text of a source file, by the encoding that it declares."""
+    """The text of a source file in its declared encoding."""
     try:
         if not stat.S_ISREG(path.stat().st_mode):
             raise InputError("not a regular file", path)
@@ -41,13 +41,13 @@ def _text(path: Path) -> str:
 
 
 def folder_above(path: Path, dots: int) -> Path:
-    """The folder that so many dots mean in an import of the file at ``path``."""
+    """The folder that this many dots mean in an import of the file at ``path``."""
     return path.parents[min(dots, len(path.parents)) - 1]
 
 
 def module_files(base: Path) -> Iterator[Path]:
-    """The files of the module that would be the folder, or the file without ending, ``base``."""
-    # The root of all folders has no name: dots of a relative import may lead there.
+    """The files of the module with the path ``base``: a folder, or a file without its suffix."""
+    # The root folder has no name; the dots of a relative import may lead there.
     for path in (base / "__init__.py", base.parent / f"{base.name}.py"):
         if path.is_file():
             yield path
@@ -57,12 +57,12 @@ def parse(path: Path) -> tuple[str, ast.Module]:
     r"""The text of a source file, whose lines end with ``\n``, and its syntax tree.
 
     Raises:
-        InputError: it is no file, cannot be read or decoded, or is no Python 3, with the line.
+        InputError: it is not a file, cannot be read or decoded, or is not Python 3, with the line.
     """
     source = _text(path)
     try:
         with warnings.catch_warnings():
-            # What Python has to say of the user's texts (`"\d"`) is not ours to say.
+            # TPC does not pass on Python's warnings about the user's texts (`"\d"`).
             warnings.simplefilter("ignore")
             return source, ast.parse(source, str(path))
     except SyntaxError as error:
@@ -78,7 +78,7 @@ def _why(source: str, error: SyntaxError) -> str:
 
 
 def _python_2(source: str, lineno: int | None) -> str | None:
-    """What on the faulty line, or else on that before it, is Python 2."""
+    """What is Python 2 on the faulty line, or else on the line before it."""
     lines = source.split("\n")
     number = lineno or 0
     for line in (lines[number - 1 : number], lines[max(number - 2, 0) : number - 1]):
