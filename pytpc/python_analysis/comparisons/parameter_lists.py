@@ -8,19 +8,10 @@ names; where neither is known, it is ``<dynamic>``.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from pytpc.python_analysis.flow.constants import DYNAMIC, Constants
 from pytpc.python_analysis.ir.control import control_dependence, post_dominators
 from pytpc.python_analysis.ir.instructions import Block, Function, Instr
-
-
-@dataclass(frozen=True)
-class TakenValue:
-    """``instr`` has the value of the parameter ``name``."""
-
-    name: str
-    instr: Instr
 
 
 class ParameterLists:
@@ -31,12 +22,15 @@ class ParameterLists:
         self._flow = constants.flow
         self._control: dict[Function, dict[Block, list[Block]]] = {}
 
-    def taken(self, start: Instr, names: list[str]) -> Iterator[TakenValue]:
+    def taken(self, start: Instr, names: list[str]) -> Iterator[tuple[str, Instr]]:
         """The values that the program takes from elements of the list ``start``.
 
         Args:
             start: the instruction with the list.
             names: the names of its elements in order; empty where they are not known.
+
+        Yields:
+            The name of a parameter, and the instruction that has its value.
         """
         elements = self._elements(start)
         values = self._flow.points.rules.values
@@ -45,7 +39,7 @@ class ParameterLists:
                 if user.op == "attr" and str(user.data) in values:
                     known = self._names(user, elements, place, names)
                     for value in self._values(user):
-                        yield from (TakenValue(name, value) for name in known)
+                        yield from ((name, value) for name in known)
 
     def named(self, asked: Instr) -> list[str]:
         """The names in a list of names, or of tuples that begin with a name."""

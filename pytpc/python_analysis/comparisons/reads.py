@@ -70,7 +70,9 @@ def find_reads(flow: Flow, constants: Constants, rules: Rules) -> list[Read]:
             if path in rules.reads:
                 found += _read(instr, path, given, constants, rules)
             if path in rules.configs:
-                found += _configs(flow, path, given, rules)
+                where, place = rules.configs[path]
+                params = _handed(flow, argument(given, where), place)
+                found += [Read("", path, param, is_table=True) for param in params]
             if path in rules.lists:
                 found += _listed(flow, instr, path, given, lists)
     return sorted(found, key=lambda read: (read.instr.number, read.name))
@@ -133,12 +135,6 @@ def _default(constants: Constants, instr: Instr | None) -> Default:
     return value if finite else None
 
 
-def _configs(flow: Flow, path: str, given: list[Given], rules: Rules) -> list[Read]:
-    where, place = rules.configs[path]
-    handed = _handed(flow, argument(given, where), place)
-    return [Read("", path, param, is_table=True) for param in handed]
-
-
 def _handed(flow: Flow, callback: Instr | None, place: int) -> Iterator[Instr]:
     """The parameter of a callback that gets the argument number ``place``."""
     for each in flow.points.of(callback) if callback is not None else ():
@@ -157,9 +153,9 @@ def _listed(
     starts = [(instr, lists.named(asked))] if asked is not None else []
     starts += [(each, []) for each in _handed(flow, argument(given, where_callback), 0)]
     return [
-        Read(taken.name, path, taken.instr)
+        Read(name, path, value)
         for start, names in starts
-        for taken in lists.taken(start, names)
+        for name, value in lists.taken(start, names)
     ]
 
 
