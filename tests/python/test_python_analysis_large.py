@@ -1,4 +1,4 @@
-"""Programs in which a value may be many objects: what is told apart, and what is given up."""
+"""Programs in which a value may be many objects: which are distinguished, and which given up."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ def main():
 
 
 def write(folder: Path, **files: str) -> Path:
-    """Files of a package; in their names two underlines stand for a slash, and ``_py`` for .py."""
+    """Write files of a package; in their names ``__`` stands for a slash, and ``_py`` for .py."""
     name = folder.name
     (folder).mkdir(parents=True, exist_ok=True)
     (folder / "package.xml").write_text(MANIFEST.format(name))
@@ -46,7 +46,7 @@ def put(folder: Path, path: str, text: str) -> None:
 
 
 def names(found: list[Entry]) -> list[tuple[str, str, str]]:
-    """Name, script below its package, and where it begins."""
+    """Name, script below its package, and the module and function where it begins."""
     return [(e.name, str(e.script.relative_to(e.root)), e.begin) for e in found]
 
 

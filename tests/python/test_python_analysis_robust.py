@@ -1,4 +1,4 @@
-"""What no analysis may break on: odd files, errors of its own, time without end."""
+"""Inputs that must not break the analysis: odd files, internal errors, endless loops."""
 
 from __future__ import annotations
 

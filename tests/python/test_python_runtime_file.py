@@ -1,4 +1,4 @@
-"""The binary file of Python nodes, read by the reader of all binary files."""
+"""The binary file of Python nodes, read by the common reader of binary files."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def recording(folder: Path) -> Recording:
 
 
 def rows(folder: Path) -> list[tuple[str, bool, float, float]]:
-    """Key, result, cmp and thresh of all reports in their order."""
+    """Key, result, cmp and thresh of all reports in order."""
     events = recording(folder).events
     keys = [events.keys[code] for code in events.key]
     columns = (events.result.tolist(), events.cmp.tolist(), events.thresh.tolist())

@@ -1,4 +1,4 @@
-"""Programs that are run with reports: scripts, modules, relays, copies, whole environments."""
+"""Programs that run with reports: scripts, modules, relays, copies, whole environments."""
 
 from __future__ import annotations
 
@@ -213,7 +213,7 @@ def test_a_relay_of_catkin(package, tmp_path):
 
 
 def keys_of(script: Path, *units: dict) -> list[str]:
-    """The keys that count where ``script`` runs, from static information with these units."""
+    """The keys that apply where ``script`` runs, from static information with these units."""
     static = Path(units[0]["source_root"]) / "units.json"
     static.write_text(json.dumps({"schema": 1, "units": list(units)}))
     table = read_table([str(static)], str(script))
