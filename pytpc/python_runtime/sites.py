@@ -182,7 +182,7 @@ class ComparisonSite(Site):
             return repeat(held.pop(caller())[1])
 
         def failed() -> Iterator[bool]:
-            """False, for an outcome that was false and of which only the truth is used."""
+            """False, for a false outcome that is used for its truth alone."""
             del held[caller()]
             return FALSE
 

@@ -9,7 +9,7 @@ from pytpc.python_analysis.ir.instructions import Instr, Variable
 
 @dataclass(frozen=True)
 class NamePattern:
-    """A name of which only the beginning and the end are known; both are empty where nothing is."""
+    """A name with a known beginning and end; both are empty where nothing is known."""
 
     start: str = ""
     end: str = ""

@@ -28,9 +28,9 @@ class Solver:
     """The objects of each value, and the copies between values.
 
     ``succ`` and ``pred``: from an Instr, Variable or Field to those that may have its value.
-    ``writers``: the instructions that write a field. ``given_up``: values of which some objects are
-    unknown, because there were too many objects or steps. ``spread``: a value, and the call that
-    makes its entries those of another dict, or attributes.
+    ``writers``: the instructions that write a field. ``given_up``: values with unknown objects,
+    because there were too many objects or steps. ``spread``: a value, and the call that makes its
+    entries those of another dict, or attributes.
     """
 
     def __init__(self, steps: int) -> None:
