@@ -26,7 +26,6 @@ _COPYING = {
 _CHOOSING = {f"builtins.{name}" for name in ("any", "all", "sum", "min", "max", "next")}
 _FEW = 16
 _HOLDING = ("container", "namespace")
-_RUNNING = {"target", "args", "kwargs", "callback_args", "function"}
 
 
 class Calls(CallTable):
@@ -203,12 +202,7 @@ class Calls(CallTable):
 
     def _unpack(self, value: Instr, params: list[Instr]) -> None:
         for offset, param in enumerate(params):
-            self.flow.when(
-                value,
-                lambda found, param=param, offset=offset: self.flow.read_element(  # type: ignore[misc]
-                    found, offset, param
-                ),
-            )
+            self.flow.when(value, partial(self.flow.read_element, key=offset, to=param))
 
     def _unpack_names(
         self, value: Instr, function: Function, first: int, taken: set[str | None]
@@ -222,12 +216,7 @@ class Calls(CallTable):
             if place in (function.vararg, function.kwarg):
                 continue
             param = function.param_instrs[place]
-            self.flow.when(
-                value,
-                lambda found, param=param, name=variable.name: self.flow.read_element(  # type: ignore[misc]
-                    found, name, param
-                ),
-            )
+            self.flow.when(value, partial(self.flow.read_element, key=variable.name, to=param))
 
     # Calls of what is outside the sources
 
@@ -387,9 +376,8 @@ class Calls(CallTable):
             self._run_now(instr, function, others, first)
             return
         for keyword, value in others:
-            if keyword in _RUNNING:
-                for offset, param in enumerate(function.param_instrs[first:]):
-                    self._started_with(keyword, value, param, offset)
+            for offset, param in enumerate(function.param_instrs[first:]):
+                self._started_with(keyword, value, param, offset)
 
     def _started_with(self, keyword: str | None, value: Instr, param: Instr, offset: int) -> None:
         if keyword == "callback_args" and offset == 1:
@@ -402,7 +390,7 @@ class Calls(CallTable):
         flow = self.flow
         for _, value in others:
             for param in function.param_instrs[first:]:
-                flow.when(value, lambda found, param=param: flow.read_element(found, ANY, param))  # type: ignore[misc]
+                flow.when(value, partial(flow.read_element, key=ANY, to=param))
         made = flow.heap.container("list", instr)
         flow.add(instr, [made])
         for each in self._results_of(function):
