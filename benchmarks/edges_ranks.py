@@ -18,9 +18,9 @@ from pytpc.base.columns import Floats
 from pytpc.diagnosis.scores.score_tables import Tpcs, parameter_tables, tpc_scores
 from pytpc.diagnosis.scores.scores import NONE
 from pytpc.diagnosis.scores.summary_scores import LogTables
-from pytpc.ingest import read
+from pytpc.ingest.reading import read
 from pytpc.recording.events import Events
-from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
+from pytpc.recording.summaries import Summaries, Summary
 from pytpc.static.static_info import read_static
 
 MISSION = Path(__file__).resolve().parents[1] / "examples" / "recorded_mission"
@@ -33,14 +33,14 @@ def summarised(events: Events, period_ns: int) -> tuple[Events, Summaries]:
     periods = defaultdict(list)
     for row, time_ns in enumerate(events.time_ns.tolist()):
         periods[int(events.key[row]), int(events.node[row]), time_ns // period_ns].append(row)
-    builder = SummaryBuilder()
+    summaries = []
     for (key, node, _), rows in periods.items():
         cmp, thresh = events.cmp[rows], events.thresh[rows]
         good = np.isfinite(cmp) & np.isfinite(thresh)
         diff = (cmp - thresh)[good] if good.any() else np.array([np.nan])
         values = np.concatenate([cmp[good], thresh[good]]) if good.any() else diff
         last = rows[-1]
-        builder.add(
+        summaries.append(
             Summary(
                 key=events.keys[key],
                 node=events.nodes[node],
@@ -62,7 +62,7 @@ def summarised(events: Events, period_ns: int) -> tuple[Events, Summaries]:
                 high=float(values.max()),
             )
         )
-    return events.take(telling), builder.build()
+    return events.take(telling), Summaries.of_rows(summaries)
 
 
 def main(mission: Path) -> None:

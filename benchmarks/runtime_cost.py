@@ -37,7 +37,7 @@ import numpy as np
 import numpy.typing as npt
 from figures import figure
 
-from pytpc.base.paths import compiler_wrapper
+from pytpc.base.paths import installed
 from pytpc.ros.ros1.graph import RosGraph
 from pytpc.static.static_info import load_link_unit
 
@@ -132,7 +132,7 @@ def built(folder: Path) -> None:
     programs = {
         "plain": [*linked, "Loop.cpp"],
         "plain_placed": [*linked, "-Wl,-mllvm,-align-all-nofallthru-blocks=5", "Loop.cpp"],
-        "built": [str(compiler_wrapper()), "-O2", "Loop.cpp"],
+        "built": [str(installed("bin/tpc-clang++")), "-O2", "Loop.cpp"],
         "thesis": [*by_hand, "Loop.cpp", "Thesis.cpp"],
         "publish": [*by_hand, "Loop.cpp", "StringPublish.cpp"],
         "listener": [*clang, "Listener.cpp"],

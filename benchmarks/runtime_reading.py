@@ -24,7 +24,7 @@ import numpy as np
 from figures import figure
 
 from pytpc.ingest.binary import _TpcReader
-from pytpc.ingest.binary_layout import RECORD
+from pytpc.ingest.binary_chunks import RECORD
 from pytpc.ingest.gathering import Gathering
 from pytpc.python_runtime import log_layout as layout
 
@@ -60,7 +60,7 @@ def go(path):
 READ = """
 from pathlib import Path
 import pyarrow.csv, pyarrow.compute
-from pytpc.ingest import read
+from pytpc.ingest.reading import read
 def go(path):
     return len(read(Path(path)).events)
 """

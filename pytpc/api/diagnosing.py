@@ -24,9 +24,9 @@ from pytpc.diagnosis.results.advice import RankCurves
 from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.diagnosis.scores.score_tables import STEP_S, Tpcs, rank_curves
 from pytpc.diagnosis.suggestion.advise import advise_blamed
-from pytpc.ingest import Recording
 from pytpc.present.answers import Diagnosed, NotebookTable, TableSequence
 from pytpc.recording.declaration import Declared
+from pytpc.recording.mission import Recording
 from pytpc.recording.parameter_change import Change
 from pytpc.ros.mission_run import PARAMS_FILE
 from pytpc.static.parameters import parameter_name, same_parameter

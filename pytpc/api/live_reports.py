@@ -10,17 +10,15 @@ from collections import Counter, deque
 from typing import NamedTuple
 
 from pytpc.diagnosis.results.live import Seen
+from pytpc.ingest.losses import LossCounter
 from pytpc.ingest.ros1 import decode_log, decode_string
 from pytpc.ingest.rosout_line import (
     Malformed,
-    StampedReport,
     parse_other,
     parse_report,
     parse_stamped,
-    parse_stamped_other,
 )
 from pytpc.recording.summaries import Summary
-from pytpc.ros.ros1.losses import BatchCounter, LossCounter
 from pytpc.ros.ros1.relay import ROSOUT, line_of
 from pytpc.ros.ros1.subscriber import Source
 
@@ -48,8 +46,7 @@ class Reports:
 
     def __init__(self) -> None:
         """Nothing was read yet."""
-        self._counter = LossCounter()
-        self._batches = BatchCounter(self._counter)
+        self._counter: LossCounter[str] = LossCounter()
         self._logged: Counter[str] = Counter()
         self._order: deque[tuple[float, str]] = deque()
         self._held: deque[_Held] = deque()
@@ -87,11 +84,12 @@ class Reports:
         return found
 
     def _log(self, source: Source, data: bytes, steady_s: float) -> list[Item]:
-        self._counter.see(data, source.node, latched=source.latched)
         log = decode_log(data)
+        node = log.node.decode("utf-8", "replace")
+        self._counter.see(source.node or node, log.seq, latched=source.latched)
         if not log.msg.startswith(_BEGIN):
             return []
-        text, node = log.msg.decode("utf-8", "replace"), log.node.decode("utf-8", "replace")
+        text = log.msg.decode("utf-8", "replace")
         line = line_of(text, log.stamp_ns)
         if line is not None:
             self._logged[line] += 1
@@ -107,8 +105,9 @@ class Reports:
         return [other] if isinstance(other, Summary) else []
 
     def _text(self, source: Source, data: bytes, steady_s: float) -> list[Item]:
-        self._batches.see(source.node, data)
-        text = decode_string(data).decode("utf-8", "replace")
+        raw = decode_string(data)
+        self._counter.see_text(source.node, raw)
+        text = raw.decode("utf-8", "replace")
         if text.startswith("#"):
             lines = text.split("\n")[1:]
             found = [self._line(line, source.node) for line in lines if line]
@@ -119,12 +118,12 @@ class Reports:
         return []
 
     def _line(self, line: str, node: str) -> Item | None:
-        other = parse_stamped_other(line, node)
+        other = parse_other(line, node, stamped=True)
         if other is not None:
             return other if isinstance(other, Summary) else None
         found = parse_stamped(line)
-        if not isinstance(found, StampedReport):
+        if isinstance(found, Malformed):
             self.malformed += 1
             return None
-        key, result, cmp, thresh, res = found.report
-        return Seen(found.time_ns, key, node, result, cmp, thresh, res)
+        time_ns, (key, result, cmp, thresh, res) = found
+        return Seen(time_ns, key, node, result, cmp, thresh, res)

@@ -10,9 +10,9 @@ from typing import Any
 
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.question import Question
-from pytpc.ingest import read as read_recording
 from pytpc.ingest.duplicates import TOLERANCE_NS
 from pytpc.ingest.reading import opened
+from pytpc.ingest.reading import read as read_recording
 from pytpc.recording.declaration import Declared
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo, read_static

@@ -15,8 +15,8 @@ from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.diagnosis.suggestion.whole_mission import answer_mission
 from pytpc.present.page.html import page_text
 from pytpc.present.page.reported_mission import ReportedMission
-from pytpc.recording.known_change import read_known_change
 from pytpc.recording.mission import Recording
+from pytpc.recording.parameter_change import read_known_change
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.origins import Origin, read_origins
 

@@ -21,10 +21,10 @@ from pytpc.diagnosis.suggestion.advise import (
     with_remedies,
 )
 from pytpc.diagnosis.suggestion.what_if import what_if as replay
-from pytpc.ingest import Recording
 from pytpc.present.answers import Advices
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import MARK_TYPES, Mark, MarkType
+from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
 
 

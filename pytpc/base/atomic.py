@@ -18,7 +18,7 @@ def stage_beside(target: Path, data: bytes, mode: int = 0o644) -> Path:
     Args:
         target: the file that is to be replaced later; it need not exist.
         data: the whole content.
-        mode: permission bits; the umask takes its share.
+        mode: permission bits, before the umask.
 
     Returns:
         The path of the new file. The caller renames or deletes it.
@@ -52,27 +52,19 @@ def leftovers(target: Path) -> list[Path]:
 
 
 def write_atomic(target: Path, data: bytes) -> None:
-    """Put ``data`` in the place of ``target``, making its folder where it is missing.
+    """Write ``data`` to ``target``, and create its folder if needed.
 
     Raises:
         TpcError: the file cannot be written; what stood there before is untouched.
     """
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        staged = stage_beside(target, data)
-        try:
-            staged.replace(target)
-        except BaseException:
-            with contextlib.suppress(OSError):
-                staged.unlink()
-            raise
-    except OSError as error:
-        raise TpcError(f"cannot be written: {error.strerror or error}", target) from error
+    with replacing(target) as staged:
+        staged.touch(0o644, exist_ok=False)
+        staged.write_bytes(data)
 
 
 @contextlib.contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """A new file beside ``path`` that takes its place when all went well.
+    """A new file beside ``path`` that replaces it if the block succeeds.
 
     Raises:
         TpcError: it cannot be written; what stood there before is untouched.

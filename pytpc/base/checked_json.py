@@ -8,15 +8,13 @@ import re
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, NoReturn
-
-from jsonschema import Draft202012Validator, ValidationError, validators
-from jsonschema.exceptions import best_match
-from referencing import Registry, Resource
-from referencing.jsonschema import DRAFT202012
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from pytpc.base.errors import InputError
 from pytpc.base.wording import plain
+
+if TYPE_CHECKING:
+    from jsonschema import Draft202012Validator, ValidationError
 
 SCHEMA_VERSION = 1
 UNIT_SCHEMA = "static_info.schema.json"
@@ -25,18 +23,14 @@ RULES_SCHEMA = "rules.schema.json"
 PYTHON_RULES_SCHEMA = "python_rules.schema.json"
 _PACKAGE = "pytpc.base"
 _LONGEST_MESSAGE = 160
-# The standard takes 5.0 for an integer; a line or a column must be one that can be counted with.
-_Validator = validators.extend(  # type: ignore[no-untyped-call]
-    Draft202012Validator,
-    type_checker=Draft202012Validator.TYPE_CHECKER.redefine(
-        "integer", lambda _, value: isinstance(value, int) and not isinstance(value, bool)
-    ),
-)
 _SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")
 
 
-def parse_json(path: Path) -> object:
+def parse_json(path: Path, *, half_characters: bool = False) -> object:
     """The JSON value in ``path``.
+
+    ``half_characters`` allows escapes of half a surrogate pair, which no UTF-8 file can hold: names
+    of files that are not UTF-8 are written so.
 
     Raises:
         InputError: the file cannot be read, is not UTF-8 or not JSON (with the line of the fault).
@@ -49,8 +43,8 @@ def parse_json(path: Path) -> object:
         data: object = json.loads(
             raw.decode("utf-8"), parse_constant=_refuse_constant, parse_float=_finite
         )
-        if _SURROGATE.search(raw) is not None:
-            # Half of a pair can be escaped in JSON, and written nowhere.
+        if not half_characters and _SURROGATE.search(raw) is not None:
+            # JSON can escape half of a surrogate pair, but no UTF-8 file can hold it.
             json.dumps(data, ensure_ascii=False).encode()
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
@@ -70,7 +64,7 @@ def dump_json(data: object) -> bytes:
     """``data`` as indented UTF-8 JSON with a final newline; the same data gives the same bytes.
 
     Raises:
-        InputError: there is a file name in it that is not UTF-8, or a number that JSON has not.
+        InputError: it holds a file name that is not UTF-8, or a number that JSON cannot hold.
     """
     try:
         text = json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
@@ -86,7 +80,7 @@ def dump_json(data: object) -> bytes:
 
 
 def check_unit(data: object, path: Path, pointer: str = "") -> dict[str, Any]:
-    """``data`` itself, when it is a link unit as the schema says.
+    """``data`` itself, if it is a link unit by the schema.
 
     Args:
         data: a parsed JSON value.
@@ -105,7 +99,7 @@ def check_unit(data: object, path: Path, pointer: str = "") -> dict[str, Any]:
 
 
 def check_version(version: object, path: Path, pointer: str = "") -> None:
-    """See that a document is not of a later version of static information.
+    """Check that a document is not of a later version of static information.
 
     Raises:
         InputError: it is.
@@ -121,27 +115,52 @@ def check_version(version: object, path: Path, pointer: str = "") -> None:
 def check_schema(
     data: object, path: Path, name: str, pointer: str = "", *, package: str = _PACKAGE
 ) -> None:
-    """See that ``data``, at ``pointer`` in ``path``, is as the schema ``name`` says.
+    """Check ``data``, at ``pointer`` in ``path``, against the schema ``name``.
 
     The schema is the file ``name`` in the folder ``schema`` of ``package``.
 
     Raises:
         InputError: with the JSON pointer of what breaks the schema.
     """
+    from jsonschema.exceptions import best_match  # noqa: PLC0415
+
     fault = best_match(_validator(name, package).iter_errors(data))
     if fault is not None:
         raise InputError(f"{pointer + _pointer(fault) or '/'}: {_shortened(fault.message)}", path)
 
 
+def check_rules(path: Path) -> None:
+    """Check a user's file of rules, which names more functions that read or expose.
+
+    The plugin checks it again when it links, but there a fault is only a warning: the link unit
+    stays as it was, and the build goes on.
+
+    Raises:
+        InputError: the file cannot be read, is no JSON or breaks the schema, with the place.
+    """
+    check_schema(parse_json(path), path, RULES_SCHEMA)
+
+
 @cache
 def _validator(name: str, package: str) -> Draft202012Validator:
+    # jsonschema takes a tenth of a second to import, and many commands check nothing.
+    from jsonschema import Draft202012Validator, validators  # noqa: PLC0415
+    from referencing import Registry  # noqa: PLC0415
+    from referencing.jsonschema import DRAFT202012  # noqa: PLC0415
+
     schema = _schema(name, package)
     Draft202012Validator.check_schema(schema)
-    # The one schema that another one names.
-    units: Resource[dict[str, Any]] = DRAFT202012.create_resource(_schema(UNIT_SCHEMA, _PACKAGE))
-    validator: Draft202012Validator = _Validator(
-        schema, registry=Registry().with_resource(UNIT_SCHEMA, units)
+    # The standard takes 5.0 for an integer; a line or a column must be one to count with.
+    checker = Draft202012Validator.TYPE_CHECKER.redefine(
+        "integer", lambda _, value: isinstance(value, int) and not isinstance(value, bool)
     )
+    strict = validators.extend(  # type: ignore[no-untyped-call]
+        Draft202012Validator, type_checker=checker
+    )
+    # The one schema that another one names.
+    units = DRAFT202012.create_resource(_schema(UNIT_SCHEMA, _PACKAGE))
+    registry: Any = Registry().with_resource(UNIT_SCHEMA, units)
+    validator: Draft202012Validator = strict(schema, registry=registry)
     return validator
 
 
@@ -158,7 +177,7 @@ def _pointer(fault: ValidationError) -> str:
 
 
 def _shortened(message: str) -> str:
-    """The end of a message says what is wrong and its beginning may be the whole document."""
+    """The end of a message says what is wrong; its beginning may be the whole document."""
     if len(message) <= _LONGEST_MESSAGE:
         return message
     return message[:40] + " ... " + message[-(_LONGEST_MESSAGE - 45) :]
@@ -167,9 +186,9 @@ def _shortened(message: str) -> str:
 def _finite(text: str) -> float:
     number = float(text)
     if math.isinf(number):
-        raise ValueError(f"{text} is beyond all numbers")
+        raise ValueError(f"{text} is too large for a number")
     return number
 
 
 def _refuse_constant(name: str) -> NoReturn:
-    raise ValueError(f"{name} is no JSON number")
+    raise ValueError(f"{name} is not a JSON number")

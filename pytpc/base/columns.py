@@ -15,7 +15,7 @@ import numpy.typing as npt
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from pytpc.base.atomic import replacing, write_atomic
+from pytpc.base.atomic import replacing
 from pytpc.base.errors import InputError
 
 Int64s = npt.NDArray[np.int64]
@@ -27,11 +27,11 @@ Read = TypeVar("Read")
 Columns = dict[str, npt.NDArray[np.generic]]
 
 WORDS = pa.dictionary(pa.int32(), pa.string())
-_KINDS: dict[pa.DataType, type[np.generic]] = {
-    WORDS: np.int32,
-    pa.int64(): np.int64,
-    pa.bool_(): np.bool_,
-    pa.float64(): np.float64,
+_KINDS: dict[str, tuple[pa.DataType, type[np.generic]]] = {
+    "Int32s": (WORDS, np.int32),
+    "Int64s": (pa.int64(), np.int64),
+    "Bools": (pa.bool_(), np.bool_),
+    "Floats": (pa.float64(), np.float64),
 }
 
 
@@ -61,21 +61,28 @@ def recode(codes: Int32s, words: Sequence[str], among: Sequence[str]) -> Int32s:
 class WordTable:
     """A table whose columns ``key`` and ``node`` are codes into the words ``keys`` and ``nodes``.
 
-    A subclass is a frozen dataclass with a field for each column of ``schema``, an array that
-    cannot be written, and for the two tuples of words. ``of`` makes one, sorted by the column
-    ``order``. ``what`` is what its file is called in messages.
+    A subclass is a frozen dataclass with a field for each column, an array that cannot be written,
+    and for the two tuples of words. ``of`` makes one, sorted by the column ``order``. ``what`` is
+    what its file is called in messages. ``kinds`` and ``schema`` are the columns for numpy and for
+    Arrow, in the order of the fields; a Parquet file with other columns or types is refused.
     """
 
-    schema: ClassVar[pa.Schema]
     order: ClassVar[str]
     what: ClassVar[str]
+    kinds: ClassVar[dict[str, type[np.generic]]]
+    schema: ClassVar[pa.Schema]
     keys: tuple[str, ...]
     nodes: tuple[str, ...]
-    _kinds: ClassVar[dict[str, type[np.generic]]]
 
     def __init_subclass__(cls) -> None:
-        """Note the type of each column: asking Arrow takes longer than a small table."""
-        cls._kinds = {field.name: _KINDS[field.type] for field in cls.schema}
+        """Take the columns from the types of the fields."""
+        columns = {
+            name: _KINDS[kind] for name, kind in cls.__annotations__.items() if kind in _KINDS
+        }
+        cls.kinds = {name: kind for name, (_, kind) in columns.items()}
+        cls.schema = pa.schema(
+            [pa.field(name, kind, nullable=False) for name, (kind, _) in columns.items()]
+        )
 
     @classmethod
     def of(cls, *, keys: Iterable[str], nodes: Iterable[str], **columns: npt.ArrayLike) -> Self:
@@ -85,7 +92,7 @@ class WordTable:
             ValueError: columns of different lengths, a code without a word, or a word twice.
             TypeError: a column is missing or has another name.
         """
-        kinds = cls._kinds
+        kinds = cls.kinds
         typed = {name: np.asarray(values, kinds.get(name)) for name, values in columns.items()}
         if len(typed) == len(kinds):
             times = typed[cls.order]
@@ -101,25 +108,22 @@ class WordTable:
         return table
 
     @classmethod
-    def empty(cls, keys: Iterable[str] = ()) -> Self:
-        """No rows, with the given keys."""
-        return cls.of(keys=keys, nodes=(), **{name: [] for name in cls._kinds})
+    def of_rows(cls, rows: Iterable[object]) -> Self:
+        """A table of objects that have an attribute for each column, key and node as text."""
+        columns: dict[str, list[Any]] = {name: [] for name in cls.kinds}
+        for row in rows:
+            for name, column in columns.items():
+                column.append(getattr(row, name))
+        keys, nodes = sorted(set(columns["key"])), sorted(set(columns["node"]))
+        for name, words in (("key", keys), ("node", nodes)):
+            places = {word: place for place, word in enumerate(words)}
+            columns[name] = [places[word] for word in columns[name]]
+        return cls.of(**columns, keys=keys, nodes=nodes)
 
     @classmethod
-    def concat(cls, parts: Sequence[Self]) -> Self:
-        """All rows of ``parts``; rows of one time keep the order of the parts. Words are sorted."""
-        if not parts:
-            return cls.empty()
-        keys = sorted({key for part in parts for key in part.keys})
-        nodes = sorted({node for part in parts for node in part.nodes})
-        recoded = []
-        for part in parts:
-            columns = part.columns()
-            columns["key"] = recode(np.asarray(columns["key"], np.int32), part.keys, keys)
-            columns["node"] = recode(np.asarray(columns["node"], np.int32), part.nodes, nodes)
-            recoded.append(columns)
-        joined = {name: np.concatenate([part[name] for part in recoded]) for name in recoded[0]}
-        return cls.of(**joined, keys=keys, nodes=nodes)
+    def empty(cls, keys: Iterable[str] = ()) -> Self:
+        """No rows, with the given keys."""
+        return cls.of(keys=keys, nodes=(), **{name: [] for name in cls.kinds})
 
     def __len__(self) -> int:
         """The number of rows."""
@@ -127,15 +131,7 @@ class WordTable:
 
     def columns(self) -> Columns:
         """The columns by name, in the order of ``schema``."""
-        return {name: getattr(self, name) for name in self._kinds}
-
-    def equals(self, other: Self) -> bool:
-        """Whether both hold the same rows (NaN equals NaN) under the same words."""
-        theirs = other.columns()
-        return (self.keys, self.nodes) == (other.keys, other.nodes) and all(
-            np.array_equal(mine, theirs[name], equal_nan=mine.dtype == np.float64)
-            for name, mine in self.columns().items()
-        )
+        return {name: getattr(self, name) for name in self.kinds}
 
     def take(self, rows: slice | Int64s | Bools) -> Self:
         """The rows at ``rows`` (a slice, row numbers or a mask), with the same words."""
@@ -153,7 +149,17 @@ class WordTable:
         Raises:
             InputError: a column is missing, is of another type or has missing values.
         """
-        columns, words = from_arrow(table, cls.schema)
+        check_schema(table.schema, cls.schema)
+        columns: dict[str, npt.ArrayLike] = {}
+        words: dict[str, list[str]] = {}
+        for field in cls.schema:
+            column = table.column(field.name)
+            if column.null_count:
+                raise InputError(f"column {field.name} has {column.null_count} missing values")
+            if field.type == WORDS:
+                words[field.name], columns[field.name] = words_and_codes(column)
+            else:
+                columns[field.name] = column.to_numpy()
         return cls.of(**columns, keys=words["key"], nodes=words["node"])
 
     def write(self, path: Path) -> None:
@@ -203,50 +209,27 @@ def check_schema(found: pa.Schema, expected: pa.Schema) -> None:
             raise InputError(f"column {field.name} is {kind}, not {field.type}")
 
 
-def from_arrow(
-    table: pa.Table, schema: pa.Schema
-) -> tuple[dict[str, npt.ArrayLike], dict[str, list[str]]]:
-    """The reverse of ``to_arrow``; the columns may be in chunks.
-
-    Raises:
-        InputError: a column is missing, is of another type or has missing values.
-    """
-    check_schema(table.schema, schema)
-    columns: dict[str, npt.ArrayLike] = {}
-    words: dict[str, list[str]] = {}
-    for field in schema:
-        column = table.column(field.name)
-        if column.null_count:
-            raise InputError(f"column {field.name} has {column.null_count} missing values")
-        if field.type == WORDS:
-            columns[field.name], words[field.name] = _codes(column)
-        else:
-            columns[field.name] = column.to_numpy()
-    return columns, words
-
-
 def write_table(table: pa.Table, path: Path) -> None:
     """Write Parquet, atomically.
 
     Raises:
         TpcError: the file cannot be written; what stood there before is untouched.
     """
-    sink = pa.BufferOutputStream()
-    pq.write_table(table, sink, compression="zstd")
-    write_atomic(path, sink.getvalue().to_pybytes())
+    with table_writer(path, table.schema) as write:
+        write(table)
 
 
 def read_table(path: Path, what: str, of: Callable[[pa.Table], Read]) -> Read:
-    """Read a Parquet file of ``what`` ("events") and make of it what ``of`` does.
+    """Read a Parquet file of ``what`` ("events") and convert it by ``of``.
 
     Raises:
         InputError: the file cannot be read, is no Parquet, or ``of`` finds fault with it.
     """
     with _as_input_errors(path, what):
-        # Its error is in the words of the system.
+        # This error has the words of the system.
         path.open("rb").close()
-        # Arrow's threads let go of what they read after the table is there. Where that is of Python
-        # (a stream, bytes), a process that ends just then is aborted (apache/arrow#34314, #33975).
+        # Arrow's threads release their source after the table is complete. If the source is a
+        # Python object, a process that ends just then is aborted (apache/arrow#34314, #33975).
         with pa.OSFile(str(path)) as file:
             table = pq.ParquetFile(file).read()
         return of(table)
@@ -254,7 +237,7 @@ def read_table(path: Path, what: str, of: Callable[[pa.Table], Read]) -> Read:
 
 @contextlib.contextmanager
 def table_writer(path: Path, schema: pa.Schema) -> Iterator[Callable[[pa.Table], None]]:
-    """Write Parquet in parts, atomically: what is given writes one part.
+    """Write Parquet in parts, atomically: each call of the given function writes one part.
 
     Raises:
         TpcError: the file cannot be written; what stood there before is untouched.
@@ -299,12 +282,11 @@ def _check_words(codes: npt.NDArray[Any], words: Sequence[str]) -> None:
         raise ValueError("a code has no key or node")
 
 
-def _codes(column: pa.ChunkedArray) -> tuple[Int32s, list[str]]:
-    """Codes and words of a dictionary column, whatever dictionary each of its chunks has."""
+def words_and_codes(column: pa.ChunkedArray) -> tuple[list[str], Int32s]:
+    """Words and codes of a dictionary column, whatever dictionary each of its chunks has."""
     if column.num_chunks == 0:
-        return np.empty(0, dtype=np.int32), []
+        return [], np.empty(0, dtype=np.int32)
     whole = column.unify_dictionaries().combine_chunks()
     if isinstance(whole, pa.ChunkedArray):
         whole = pa.concat_arrays(whole.chunks)
-    words = whole.dictionary.to_pylist()
-    return whole.indices.to_numpy(zero_copy_only=False), words
+    return whole.dictionary.to_pylist(), whole.indices.to_numpy(zero_copy_only=False)

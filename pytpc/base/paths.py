@@ -92,24 +92,10 @@ plugin = partial(installed, "lib/tpc/TpcPasses.so")
 defer_plugin = partial(installed, "lib/tpc/TpcDefer.so")
 # The library that instrumented nodes report through.
 log_library = partial(installed, "lib/libtpc_log.so")
-# tpc-clang++, the compiler for builds that are not CMake.
-compiler_wrapper = partial(installed, "bin/tpc-clang++")
-# The index of colcon's mixins.
-mixin_index = partial(installed, "share/tpc/colcon/index.yaml")
-
-
-def accepting_flags() -> list[str]:
-    """The flags with which clang takes what gcc does, as the installed half adds them.
-
-    Raises:
-        MissingToolError: the installed half is not there.
-    """
-    lines = installed("share/tpc/flags").read_text("utf-8").splitlines()
-    return [line.removeprefix("accept ") for line in lines if line.startswith("accept ")]
 
 
 def search_path() -> str:
-    """Folders in which programs are looked for: the system's before those of the caller.
+    """The folders to look for programs in: the system's before those of the caller.
 
     A Python from somewhere else that comes first on PATH breaks catkin's generators.
     """
@@ -151,13 +137,13 @@ def require_tools(names: Iterable[str] = BUILD_TOOLS) -> dict[str, Path]:
 
 
 def require_ros() -> None:
-    """See that ROS 1 (catkin and roscpp) is installed.
+    """Check that ROS 1 (catkin and roscpp) is installed.
 
-    Looked for in ``$CMAKE_PREFIX_PATH``, in ``/opt/ros/*`` and in ``/usr``; the two need not have
-    the same prefix.
+    It looks in ``$CMAKE_PREFIX_PATH``, in ``/opt/ros/*`` and in ``/usr``. The two may have
+    different prefixes.
 
     Raises:
-        MissingToolError: it is not; the message has the command that installs it.
+        MissingToolError: it is not installed; the message has the command that installs it.
     """
     listed = os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep)
     found = ros_places([*(Path(folder) for folder in listed if folder), *ROS_PREFIXES])
@@ -170,7 +156,7 @@ def require_ros() -> None:
 
 
 def ros_places(prefixes: Iterable[Path]) -> dict[str, Path]:
-    """The first prefix that holds catkin, and that which holds roscpp; only those that are."""
+    """The first prefixes that hold catkin and roscpp, by name; without one that is nowhere."""
     found: dict[str, Path] = {}
     for prefix in prefixes:
         for name, place in _ROS_PLACES.items():

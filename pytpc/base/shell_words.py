@@ -19,7 +19,7 @@ class EnvChange:
 
     @classmethod
     def between(cls, before: Mapping[str, str], after: Mapping[str, str]) -> EnvChange:
-        """What makes ``after`` of ``before``."""
+        """The changes from ``before`` to ``after``."""
         values = {name: value for name, value in after.items() if before.get(name) != value}
         return cls(dict(sorted(values.items())), tuple(sorted(before.keys() - after.keys())))
 

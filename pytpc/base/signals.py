@@ -11,10 +11,10 @@ from types import FrameType
 
 @contextlib.contextmanager
 def signals_end() -> Iterator[None]:
-    """Within it SIGTERM and SIGHUP raise SystemExit, so that what was started is ended.
+    """Make SIGTERM and SIGHUP raise SystemExit within the block, so that started processes end.
 
-    Where SIGINT is ignored, as in a job in the background, it stays so for this process, but not
-    for those that it starts: they are to end by it.
+    A process in the background ignores SIGINT and goes on doing so, but the processes that it
+    starts do not: SIGINT must end them.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
@@ -23,12 +23,9 @@ def signals_end() -> Iterator[None]:
     def leave(number: int, _frame: FrameType | None) -> None:
         raise SystemExit(128 + number)
 
-    def ignore(_number: int, _frame: FrameType | None) -> None:
-        pass
-
     before = {number: signal.signal(number, leave) for number in (signal.SIGTERM, signal.SIGHUP)}
     if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
-        before[signal.SIGINT] = signal.signal(signal.SIGINT, ignore)
+        before[signal.SIGINT] = signal.signal(signal.SIGINT, lambda *_: None)
     try:
         yield
     finally:

@@ -10,7 +10,7 @@ from pathlib import Path
 def source_bytes(path: Path) -> bytes:
     """The file in UTF-8, without a byte order mark, from the encoding that it declares (PEP 263).
 
-    What declares none, or cannot be decoded, is given as it is.
+    A file that declares none, or cannot be decoded, is returned as it is.
 
     Raises:
         OSError: it cannot be read.

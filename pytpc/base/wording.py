@@ -38,7 +38,7 @@ def exact(value: Number | None) -> str:
 
 
 def percent(part: float) -> str:
-    """``72 %``; what is neither 0 nor 1 is not shown as such.
+    """``72 %``; only exactly 0 and 1 are shown as 0 % and 100 %.
 
     >>> percent(0.721), percent(0.001), percent(0.999), percent(0.0)
     ('72 %', '<1 %', '>99 %', '0 %')

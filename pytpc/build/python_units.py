@@ -19,7 +19,8 @@ from pytpc.base.wording import plain
 from pytpc.python_analysis.analysis import analyse_entry
 from pytpc.python_analysis.budget import SECONDS
 from pytpc.python_analysis.rules_file import Rules
-from pytpc.python_analysis.sources.packages import Entry, entries, entry_of
+from pytpc.python_analysis.sources.packages import entries, entry_of
+from pytpc.python_analysis.sources.scripts import Entry
 from pytpc.static.link_unit import LeftOut, LinkUnit
 from pytpc.static.static_info import python_unit_file
 from pytpc.workspace.packages import package_folders

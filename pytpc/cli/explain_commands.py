@@ -23,8 +23,9 @@ from pytpc.static.explanations import (
     where,
     why_no_comparison,
 )
+from pytpc.static.link_unit import LinkUnit, PathStep
 from pytpc.static.parameters import parameter_name
-from pytpc.static.static_info import LinkUnit, PathStep, StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 _KINDS = {
     "lost_value": "value lost",

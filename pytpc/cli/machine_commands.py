@@ -9,11 +9,11 @@ import click
 from rich.console import Console
 from rich.text import Text
 
+from pytpc.base.checked_json import check_rules
 from pytpc.base.paths import cmake_file, prefix
 from pytpc.base.wording import many
 from pytpc.cli.arguments import CONSTANTS, JSON, PATH, RULES
 from pytpc.cli.console import console, print_json, table_of
-from pytpc.static.rules import check_rules
 from pytpc.workspace.doctor.finding import Finding, Severity, by_severity
 from pytpc.workspace.doctor.look import look_at_machine
 from pytpc.workspace.doctor.look_workspace import look_at_known, look_at_workspace

@@ -1,7 +1,8 @@
-"""The flags by which a file is parsed as the build compiled it.
+"""The flags with which a file is parsed as the build compiled it.
 
-From CMake's file API (the ``compileGroups`` of a target), else from compile_commands.json, else
-made up; of each only what the meaning of the source depends on.
+They come from CMake's file API (the ``compileGroups`` of a target), else from
+compile_commands.json, else they are guessed. Only flags that change the meaning of the source are
+kept.
 """
 
 from __future__ import annotations
@@ -42,8 +43,8 @@ class Flags:
 def flags_for(file: str, unit: LinkUnit) -> Flags:
     """How ``file`` was compiled into ``unit``.
 
-    A header has the flags of a source file of the unit. A build folder that is gone, or whose
-    answers cannot be read, costs the flags and is no error.
+    A header gets the flags of a source file of the unit. If the build folder is gone, or its files
+    cannot be read, the flags are guessed.
     """
     language = ("-x", "c" if file.endswith(_C_SUFFIX) else "c++")
     if unit.build_folder is not None:
@@ -59,12 +60,12 @@ def flags_for(file: str, unit: LinkUnit) -> Flags:
 
 
 def meaningful(arguments: Iterable[str]) -> list[str]:
-    """The arguments that say what the source means: paths, macros, the standard.
+    """The arguments that give the source its meaning: paths, macros, the standard.
 
-    Not those of other compilers, of the optimiser, of plugins, of warnings and of output. Headers
+    Those for other compilers, the optimiser, plugins, warnings and output are left out. Headers
     that CMake has precompiled are included as text.
     """
-    # What is for clang's front end alone has the same names there.
+    # Arguments for clang's front end have the same names behind -Xclang.
     rest = iter([argument for argument in arguments if argument != "-Xclang"])
     kept: list[str] = []
     for argument in rest:

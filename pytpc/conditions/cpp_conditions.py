@@ -1,8 +1,8 @@
-"""The whole condition of which a comparison is a part, as it stands in the source.
+"""Finds the whole condition that a comparison is part of, as written in the source.
 
-The static information has a comparison's line and column; libclang says which condition that is,
-over as many lines as it has, and from which macro it comes. The bindings are PyPI's ``clang``, the
-library is the one that Debian's clang-19 needs anyway: what parses is what compiled.
+The static information has a comparison's line and column; libclang finds the condition, however
+many lines it has, and the macro it comes from. The bindings are PyPI's ``clang``; the library is
+that of Debian's clang-19, which also compiled the file.
 """
 
 from __future__ import annotations
@@ -199,19 +199,19 @@ class _Source:
             around = [each for each in children if _covers(each, offset)]
             if not around:
                 return way
-            # The name of an operator that is called lies around its operands, too.
+            # A called operator's name also spans its operands.
             way.append(min(around, key=_length))
             children = way[-1].get_children()
 
     def _condition_of(self, node: Cursor, child: Cursor | None, in_macro: bool) -> Cursor | None:
-        """``child`` where it is the condition of ``node``, which the place is in otherwise.
+        """``child``, if it is the condition of ``node``.
 
-        Without a child the place is the statement's own keyword, and its condition is meant.
+        Without a child the place is the keyword of the statement, whose condition is meant.
         """
         if child is None:
             children = node.get_children()
             return next((each for each in children if self._is_condition(node, each)), None)
-        # Within a macro all has one place, and the first child that is there is the condition.
+        # Within a macro everything has one place, and the first child there is the condition.
         whole = in_macro and node.extent.start.offset == child.extent.start.offset
         return child if whole or self._is_condition(node, child) else None
 
@@ -222,7 +222,7 @@ class _Source:
             return bool(child == list(node.get_children())[-1])
         if node.kind == CursorKind.FOR_STMT:
             return self._is_second_in_head(node, child)
-        # A body ends before a semicolon or with a brace, an initialisation with its semicolon.
+        # A body ends before a semicolon or with a brace, an initialisation ends with its semicolon.
         blank = _BLANK.match(self._data, child.extent.end.offset)
         end = blank.end() if blank is not None else 0
         return self._data[end : end + 1] == b")"

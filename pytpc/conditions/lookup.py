@@ -72,7 +72,7 @@ class _Job:
 
     @property
     def digest(self) -> str:
-        """Of all that the answer depends on, but for what the file includes."""
+        """The digest of all that the answer depends on, except included files."""
         parts = (str(_FORMAT), self.file, *self.flags.arguments)
         return hashlib.sha256("\0".join(parts).encode() + b"\0" + self.data).hexdigest()
 
@@ -124,7 +124,7 @@ def look_up_conditions(
             condition = conditions[_place(tpc)]
             notes = [] if condition is not None else [NOT_FOUND]
             notes += [] if flags.of_build else [WITHOUT_FLAGS]
-            # The analysis keeps a comparison's own line, which has been looked at already.
+            # The comparison's own line was checked above: the analysis keeps it.
             at = built[tpc.keys[0].package, tpc.keys[0].link_unit]
             notes += [NEWER] if _is_newer(condition, file, at) else []
             answers[tpc.key] = Answer(condition, "; ".join(notes))
@@ -132,7 +132,7 @@ def look_up_conditions(
 
 
 def _of_python(static: StaticInfo, tpcs: Iterable[Tpc]) -> dict[str, Answer]:
-    """The conditions of comparisons in Python; nothing of it is kept: it takes milliseconds."""
+    """The conditions of comparisons in Python; finding them takes milliseconds, so none is kept."""
     sources: dict[str, PythonSource | str] = {}
     answers: dict[str, Answer] = {}
     for tpc in tpcs:
@@ -168,14 +168,14 @@ def _python_source(file: str) -> PythonSource | str:
 
 
 def _is_newer(condition: Condition | None, file: str, built: int | None) -> bool:
-    """Whether lines of the condition may have changed that the analysis did not keep."""
+    """Whether lines of the condition that the analysis did not keep may have changed."""
     if condition is None or condition.lineno == condition.end_lineno or built is None:
         return False
     return _changed_ns(file) > built
 
 
 def _by_unit(tpcs: Iterable[Tpc]) -> dict[str, list[Tpc]]:
-    """The TPCs of a file by a key of the link unit whose flags are used: as few as will do.
+    """The TPCs of a file, by a key of the link unit whose flags are used: as few units as possible.
 
     Targets may compile one file with different macros, so each TPC needs flags that it exists with.
     """
@@ -250,8 +250,8 @@ def _precompiled(flags: Flags, target: Path) -> str | None:
 
 
 def _parse(job: _Job, precompiled: Future[str | None] | None) -> Parsed | None:
-    """Parse a file, with what is precompiled for its flags if that finds everything."""
-    # The pool takes jobs in their order: what is waited for here has been begun before.
+    """Parse a file, with the precompiled headers of its flags if that finds all conditions."""
+    # The pool takes jobs in their order, so the job that is awaited here has begun.
     header = precompiled.result() if precompiled is not None else None
     arguments = job.flags.arguments
     if header is not None:
@@ -264,7 +264,7 @@ def _parse(job: _Job, precompiled: Future[str | None] | None) -> Parsed | None:
 
 
 def _kept(path: Path, job: _Job) -> dict[Place, Condition | None] | None:
-    """The answers of an earlier time, if all are there and no header has changed since."""
+    """The cached answers, if all are there and no header has changed since."""
     try:
         data: Any = json.loads(path.read_bytes())
         if any(_stamp(name) != stamp for name, stamp in data["included"].items()):

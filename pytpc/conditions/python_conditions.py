@@ -1,7 +1,7 @@
-"""The whole condition of which a comparison in Python is a part, from the syntax tree.
+"""Finds the whole condition that a comparison in Python is part of, in the syntax tree.
 
-The analysis says where a comparison begins and ends; a link of a chain is the text of both its
-operands, a loop's limit the call of ``range``.
+The analysis gives the begin and end of a comparison. For a link of a chain they enclose both
+operands, for a loop's limit the call of ``range``.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from io import BytesIO
 
 from pytpc.conditions.cpp_conditions import Condition
 
-# Line and column where it begins and behind its last character, from 1; columns count bytes in
-# UTF-8. The end is None where it is not known.
+# Line and column of the begin and of the byte behind the end, from 1; columns count bytes in UTF-8.
+# The end is None if it is not known.
 Span = tuple[int, int, int | None, int | None]
 
 _LINE_END = re.compile(r"\r\n|\r|\n")
@@ -31,7 +31,7 @@ _HEADS: tuple[tuple[type[ast.AST], str, str], ...] = (
     (ast.AsyncFor, "iter", "for"),
     (ast.comprehension, "iter", "for"),
 )
-# What a comparison is joined into a larger one by.
+# Nodes that join comparisons into a larger condition.
 _JOINING = (
     ast.BoolOp, ast.UnaryOp, ast.BinOp, ast.Compare, ast.NamedExpr, ast.MatchValue, ast.MatchOr,
 )  # fmt: skip
@@ -59,7 +59,7 @@ class PythonSource:
             for child in ast.iter_child_nodes(node):
                 self._parents[child] = node
                 if isinstance(child, ast.expr):
-                    # Of several that begin here any will do: the others are around it, or in it.
+                    # Any of several that begin here will do: the others are around it, or in it.
                     self._begun.setdefault((child.lineno, child.col_offset + 1), child)
 
     def condition(self, span: Span) -> Condition | None:
@@ -94,7 +94,7 @@ class PythonSource:
 
 def _covers(node: ast.AST, span: Span) -> bool:
     if not isinstance(node, ast.expr):
-        # A statement: nothing that is an expression has this end.
+        # A statement: no expression has this end.
         return True
     if span[2] is None or span[3] is None:
         return True
@@ -103,7 +103,7 @@ def _covers(node: ast.AST, span: Span) -> bool:
 
 
 def _head(parent: ast.AST, child: ast.AST) -> str | None:
-    """What ``child`` is the condition of, where ``parent`` is that."""
+    """The kind of ``parent``, if ``child`` is its condition."""
     for kind, field, name in _HEADS:
         if isinstance(parent, kind):
             value = getattr(parent, field)

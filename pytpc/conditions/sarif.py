@@ -1,6 +1,6 @@
 """The TPCs as SARIF 2.1.0 (OASIS), for code review tools.
 
-Each TPC is a note: nothing is wrong with it, a reviewer should know that a parameter decides there.
+Each TPC is a note: nothing is wrong with it, but a reviewer should know that a parameter decides.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ _RULES = {
         " that stands in the source.",
     ),
 }
-# What a reader wants of a way that is folded together.
+# The steps that are shown of a folded path.
 _ESSENTIAL = frozenset({"read", "compare", "expose"})
 
 

@@ -9,8 +9,9 @@ from typing import TypeVar
 from pytpc.base.wording import exact
 from pytpc.conditions.cpp_conditions import Condition
 from pytpc.conditions.lookup import Answer
+from pytpc.static.link_unit import Comparison, Default, LinkUnit, Transform
 from pytpc.static.places import Tpc
-from pytpc.static.static_info import Comparison, Default, LinkUnit, StaticInfo, Transform
+from pytpc.static.static_info import StaticInfo
 
 _Item = TypeVar("_Item")
 
@@ -27,8 +28,8 @@ class Exposed:
 class Details:
     """A TPC with what its link units say of it.
 
-    ``nearest`` is the comparison with the smallest distance. Of ``defaults``, ``reads``
-    (``FILE:LINE``) and ``exposed`` there are several where the link units differ. ``condition`` is
+    ``nearest`` is the comparison with the smallest distance. ``defaults``, ``reads``
+    (``FILE:LINE``) and ``exposed`` have several entries if the link units differ. ``condition`` is
     None where only the source line is known; ``note`` says why, or what else to mind.
     """
 

@@ -8,55 +8,47 @@ import numpy as np
 
 from pytpc.base.errors import InputError
 from pytpc.ingest import ros1
-from pytpc.ingest.bag_chunks import BagConnection, BagIndex, BrokenBagError, messages, read_index
-from pytpc.ingest.bag_damage import describe_damage
+from pytpc.ingest.bag_chunks import BrokenBagError, find_damage, messages, read_index
 from pytpc.ingest.gathering import Gathering, Progress
-from pytpc.ingest.messages import REPORTS, ROSOUT, ROSOUT_AGG, Decoders, Messages
-from pytpc.recording.marks import MarkMessages
+from pytpc.ingest.messages import REPORTS, ROSOUT, ROSOUT_AGG, Decoders, Messages, wanted
 
-_LOG = "rosgraph_msgs/msg/Log"
-_STRING = "std_msgs/msg/String"
-_TIME = "std_msgs/msg/Time"
+_LOG = {"rosgraph_msgs/msg/Log"}
+_TYPES = {ROSOUT: _LOG, ROSOUT_AGG: _LOG, REPORTS: {"std_msgs/msg/String"}}
+_TIMES = {"std_msgs/msg/Time"}
 _DECODERS = Decoders(ros1.decode_log, ros1.decode_string, ros1.decode_time)
 
 
 def read_bag_into(path: Path, gathering: Gathering, on_progress: Progress | None = None) -> None:
     """Read a ROS 1 bag.
 
-    Reports come from /rosout, /rosout_agg and /threshold_information. Time is the message's own
-    stamp; where that is 0, the time at which the bag got it. Marks come
-    from the topics of docs/reference/formats.md#marks.
-
-    Args:
-        path: the file.
-        gathering: takes it all.
-        on_progress: called with (bytes read, bytes in all) every now and then.
+    Reports come from /rosout, /rosout_agg and /threshold_information, marks from the topics of
+    docs/reference/formats.md#marks. A message without a stamp gets the time at which it was
+    recorded. ``on_progress`` is called with (bytes read, bytes in all).
 
     Raises:
         InputError: the file is no bag, is truncated, has no index or is damaged; one line with the
             byte, where the file itself tells it.
     """
-    if not path.is_file():
-        raise InputError("no such bag" if not path.exists() else "a folder, not a bag", path)
     try:
         with path.open("rb") as stream:
             index = read_index(stream)
-            wanted, notes = _wanted(index)
+            found, notes = wanted(index.connections.values(), _TYPES, _TIMES)
+            kept = {connection.number: connection for connection in found}
             gathering.notes += notes
             if index.span is not None:
                 gathering.spans.append(index.span)
-            logs = [n for n, connection in wanted.items() if connection.topic == ROSOUT]
-            latched = {wanted[n].caller.encode() for n in logs if wanted[n].latched}
+            logs = [n for n, connection in kept.items() if connection.topic == ROSOUT]
+            latched = {kept[n].caller.encode() for n in logs if kept[n].latched}
             taken = Messages(gathering, str(path), _DECODERS, latched=latched)
             total = index.index_pos
-            senders = {n: wanted[n].caller.encode() for n in logs}
-            for chunk in messages(stream, index, wanted.keys()) if wanted else ():
+            senders = {n: kept[n].caller.encode() for n in logs}
+            for chunk in messages(stream, index, kept.keys()) if kept else ():
                 is_log = np.isin(chunk.connection, logs)
                 others = np.flatnonzero(~is_log)
                 if not taken.take_logs(chunk, is_log, senders):
                     others = np.arange(chunk.connection.size)
                 for row in others.tolist():
-                    connection = wanted[int(chunk.connection[row])]
+                    connection = kept[int(chunk.connection[row])]
                     raw = chunk.data[chunk.begin[row] : chunk.end[row]]
                     time_ns = int(chunk.time_ns[row])
                     taken.take(connection.topic, connection.caller, time_ns, raw)
@@ -72,28 +64,13 @@ def read_bag_into(path: Path, gathering: Gathering, on_progress: Progress | None
 
 
 def _broken(path: Path, error: BrokenBagError) -> InputError:
-    """The error for a bag that could not be read; a walk over its records finds the byte."""
+    """The error for a bag that could not be read, with the byte at which it is broken."""
     try:
-        damage = describe_damage(path)
+        with path.open("rb") as stream:
+            damage = find_damage(stream, path.stat().st_size)
     except OSError as failure:
         return InputError(f"cannot be read: {failure.strerror or failure}", path)
     if damage is None:
         return InputError(f"damaged: {error}", path)
     hint = "" if damage.startswith("not a") else f'; "rosbag reindex {path.name}" recovers the rest'
     return InputError(damage + hint, path)
-
-
-def _wanted(index: BagIndex) -> tuple[dict[int, BagConnection], list[str]]:
-    """The connections that carry reports or marks, and a note for each of another type."""
-    wanted = {}
-    notes = set()
-    for number, connection in index.connections.items():
-        expected = {ROSOUT: _LOG, ROSOUT_AGG: _LOG, REPORTS: _STRING}.get(connection.topic)
-        of_marks = MarkMessages.message_type(connection.topic)
-        if expected is None and of_marks is not None:
-            expected = {"Time": _TIME, "String": _STRING}[of_marks]
-        if expected == connection.type:
-            wanted[number] = connection
-        elif expected is not None:
-            notes.add(f"{connection.topic} carries {connection.type}, not {expected}: not read")
-    return wanted, sorted(notes)

@@ -1,9 +1,9 @@
-"""The messages of a ROS 1 bag in the order of the file, with little memory and little per message.
+"""Reads the messages of a ROS 1 bag in the order of the file, quickly and with little memory.
 
 rosbags' reader keeps an object for each message of a bag in memory and parses each record's header
-in full; a mission has millions of them (docs/explanation/decisions.md). Here the connections are
-read from the index, as there, but the messages chunk by chunk, all of a chunk at once.
-Format: http://wiki.ros.org/Bags/Format/2.0
+in full; a mission has millions of them (docs/explanation/decisions.md). This reader also takes the
+connections from the index, but reads all messages of a chunk at once. The format is described at
+http://wiki.ros.org/Bags/Format/2.0
 """
 
 from __future__ import annotations
@@ -40,16 +40,18 @@ class BrokenBagError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class BagConnection:
-    """One publisher's topic in the bag; ``type`` in the way of ROS 2 (``std_msgs/msg/String``).
+    """One publisher's topic in the bag.
 
+    ``msgtype`` is as in ROS 2 (``std_msgs/msg/String``), ``definition`` the text of the message.
     ``latched``: it sent its last message to each new subscriber.
     """
 
     number: int
     topic: str
-    type: str
+    msgtype: str
     caller: str
     latched: bool
+    definition: str
 
 
 @dataclass(frozen=True)
@@ -103,6 +105,37 @@ def read_index(stream: BinaryIO) -> BagIndex:
             first = min(first, _time(header, b"start_time"))
             last = max(last, _time(header, b"end_time"))
     return BagIndex(connections, sorted(chunks), (first, last) if last >= 0 else None, index_pos)
+
+
+def find_damage(stream: BinaryIO, size: int) -> str | None:
+    """What is wrong with a bag of ``size`` bytes, and at which byte; None if nothing is found.
+
+    A walk over the records, which needs no index: the first is the bag header, whose ``index_pos``
+    is 0 until the recorder closes the file.
+    """
+    begin = stream.read(len(MAGIC))
+    if begin != MAGIC:
+        if MAGIC.startswith(begin):
+            return f"truncated: the file ends at byte {size}, within its first line"
+        return f'not a ROS 1 bag: "{MAGIC.decode().strip()}" is not at byte 0'
+    index: int | None = None
+    while (place := stream.tell()) < size:
+        try:
+            header = _read_header(stream)
+            behind = _LENGTH.unpack(_read(stream, 4))[0] + stream.tell()
+        except BrokenBagError:
+            behind = size + 1
+        if behind > size:
+            return f"truncated or damaged: no whole record at byte {place} of {size}"
+        if index is None:
+            index = int.from_bytes(header.partition(b"index_pos=")[2][:8], "little")
+        stream.seek(behind)
+    if index == 0:
+        return f"not closed by its recorder: no index after byte {size}"
+    if index is None or index >= size:
+        at = "before the bag header" if index is None else f"the index should be at byte {index}"
+        return f"truncated: the file ends at byte {size}, {at}"
+    return None
 
 
 @dataclass(frozen=True)
@@ -178,12 +211,11 @@ def _by_index(data: bytes, entries: list[tuple[int, Rows]]) -> _Found | None:
         return None
     whole = np.frombuffer(data, np.uint8)
     heads = whole[offset[:, None] + np.arange(_FORM_BYTES + 8)]
-    form = next((f for f in _FORMS if f.fullmatch(heads[0, 4:-4].tobytes())), None)
-    if form is None:
+    head = heads[0, 4:-4].tobytes()
+    first = next((found for form in _FORMS if (found := form.fullmatch(head))), None)
+    if first is None:
         return None
     # All have the form of the first: the same bytes but for connection and time.
-    first = form.fullmatch(heads[0, 4:-4].tobytes())
-    assert first is not None
     fixed = np.ones(_FORM_BYTES + 8, np.bool_)
     fixed[-4:] = False
     for name in ("conn", "time"):
@@ -225,7 +257,7 @@ def _unpacked(header: dict[bytes, bytes], data: bytes) -> bytes:
         if name == "none":
             return data
         if name == "bz2":
-            # What it becomes must not be without end.
+            # A broken chunk must not unpack without end.
             unpacked = bz2.BZ2Decompressor().decompress(data, size + 1)
         elif name == "lz4":
             unpacked = LZ4FrameDecompressor().decompress(data, size + 1)
@@ -320,9 +352,9 @@ def _time(fields: dict[bytes, bytes], name: bytes) -> int:
 def _connection(header: dict[bytes, bytes], data: dict[bytes, bytes]) -> BagConnection:
     if header.get(b"op") != bytes([_CONNECTION]) or b"topic" not in header or b"type" not in data:
         raise BrokenBagError("no connection")
-    topic, kind, caller = (
-        raw.decode("utf-8", "replace")
-        for raw in (header[b"topic"], data[b"type"], data.get(b"callerid", b""))
+    rest = (data.get(name, b"") for name in (b"callerid", b"message_definition"))
+    topic, kind, caller, definition = (
+        raw.decode("utf-8", "replace") for raw in (header[b"topic"], data[b"type"], *rest)
     )
     package, _, name = kind.rpartition("/")
     package = package.removesuffix("/msg")
@@ -330,4 +362,4 @@ def _connection(header: dict[bytes, bytes], data: dict[bytes, bytes]) -> BagConn
     topic = f"/{words}" if topic.startswith("/") else words
     latched = data.get(b"latching") == b"1"
     kind = f"{package}/msg/{name}"
-    return BagConnection(_number(header, b"conn", 4), topic, kind, caller, latched)
+    return BagConnection(_number(header, b"conn", 4), topic, kind, caller, latched, definition)

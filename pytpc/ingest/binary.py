@@ -1,8 +1,8 @@
 """The binary file that the file sink writes (``.tpc``): fixed-size records, read as columns.
 
-First all chunk headers and the system's records are read (what the sites are called, how the clocks
-go), then the threads' chunks, several at once, and brought together in the order of the steady
-clock. The file may be of a process that was killed, or that still runs.
+The reader first reads all chunk headers and the system's records (keys of sites, clocks). Then it
+reads the threads' chunks, several at once, and merges them in the order of the steady clock. The
+process that wrote the file may have been killed, or may still be running.
 """
 
 from __future__ import annotations
@@ -17,11 +17,18 @@ import numpy.typing as npt
 from pytpc.base.columns import Int32s, Int64s
 from pytpc.base.errors import InputError
 from pytpc.base.wording import many
-from pytpc.ingest.binary_chunks import GROUP, Bytes, ChunkFile, RecordBlock, ThreadChunks
+from pytpc.ingest.binary_chunks import (
+    CHUNK,
+    GROUP,
+    RECORD,
+    Bytes,
+    ChunkFile,
+    FileHeader,
+    RecordBlock,
+    ThreadChunks,
+)
 from pytpc.ingest.binary_clock import Clock
-from pytpc.ingest.binary_layout import CHUNK, RECORD, FileHeader
 from pytpc.ingest.binary_system import (
-    SummaryOrigin,
     SystemRecords,
     open_summaries,
     read_system,
@@ -166,7 +173,7 @@ class _TpcReader:
         records: npt.NDArray[np.void],
         places: list[int],
     ) -> RecordBlock | None:
-        """The usual case: chunks full of reports of known sites, on the wall's clock."""
+        """The usual case: chunks full of reports of known sites, on wall time."""
         if thread.simulated_ns != -1:
             return None
         firsts = thread.firsts[thread.read : thread.read + len(places)]
@@ -204,7 +211,7 @@ class _TpcReader:
         places: list[int],
         is_last: bool,
     ) -> RecordBlock:
-        """Chunks of which at least one is not full or holds other records than reports."""
+        """Chunks, at least one of which is not full or holds other records than reports."""
         blocks = []
         for row, place in enumerate(places):
             first = thread.firsts[thread.read]
@@ -242,7 +249,7 @@ class _TpcReader:
         steady = self._rising(thread, np.ascontiguousarray(chunk["steady"]))
         times = self._clock.real(steady)
         if thread.simulated_ns != -1 or bool(simulated.any()):
-            # cmp's place holds the simulated time, which stands until the next such record.
+            # cmp holds the simulated time, which is valid until the next such record.
             given = np.ascontiguousarray(chunk["cmp"]).view(np.int64)
             since = np.maximum.accumulate(np.where(simulated, np.arange(chunk.size), -1))
             sim_ns = np.where(since < 0, thread.simulated_ns, given[since])
@@ -278,7 +285,7 @@ class _TpcReader:
     # --- the rest
 
     def _summaries(self) -> None:
-        """Those that were written, then those whose period is open, unless they were written."""
+        """Hand in the written summaries, then those of open periods that were not written."""
         still_open = [open_summaries(self._file.load_one(place)) for place in self._file.live]
         unwritten = np.concatenate([kept for kept, _ in still_open]) if still_open else None
         self._torn_slots = sum(torn for _, torn in still_open)
@@ -291,9 +298,10 @@ class _TpcReader:
             self._hand_in_summaries(unwritten)
 
     def _hand_in_summaries(self, kept: Rows) -> None:
-        origin = SummaryOrigin(self._clock, self._last_ns, self._node_code, self._channel.code)
-        rows = summary_rows(kept, origin, self._key_of_site, self._skip)
-        self._gathering.add_summary_rows(rows)
+        rows = summary_rows(kept, self._key_of_site, self._clock, self._last_ns, self._skip)
+        rows["node"] = self._node_code
+        rows["channel"] = self._channel.code
+        self._gathering.summaries.append(rows)
 
     def _complaints(self) -> None:
         gathering, header, name = self._gathering, self.header, self._path.name

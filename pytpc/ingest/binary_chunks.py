@@ -1,8 +1,8 @@
-"""The chunks of a binary file of reports: where they are, and their bytes.
+"""The binary file of reports (docs/reference/formats.md): its header, its chunks and their bytes.
 
-They are read, not mapped: into memory that is used again and again, and so stays in the processor's
-cache, which was measured to be quicker; and a mapped file that is shortened meanwhile, or lies on a
-broken disk, ends the reader with SIGBUS.
+``pytpc.python_runtime.log_layout`` has the constants of the writer. Chunks are read, not mapped:
+reading into the same memory again and again is faster, because it stays in the processor's cache.
+A mapped file that is shortened meanwhile, or that lies on a broken disk, ends the reader by SIGBUS.
 """
 
 from __future__ import annotations
@@ -19,7 +19,6 @@ import numpy.typing as npt
 
 from pytpc.base.columns import Bools, Int64s
 from pytpc.base.errors import InputError
-from pytpc.ingest.binary_layout import whole_bytes
 from pytpc.ingest.gathering import ReportColumns
 from pytpc.python_runtime import log_layout as layout
 
@@ -30,6 +29,75 @@ Skip = Callable[[str], None]
 GROUP = 32
 # Kind, thread and first record of a chunk, and the time of that record.
 _HEAD = struct.Struct("<IIQ48x8xq")
+
+RECORD = np.dtype(
+    [("what", "<u4"), ("site", "<u4"), ("steady", "<i8"), ("cmp", "<f8"), ("thresh", "<f8")]
+)
+CHUNK = np.dtype([("kind", "<u4"), ("thread", "<u4"), ("first", "<u8"), ("tid", "<u8")])
+KEPT = np.dtype(
+    [
+        ("what", "<u4"),
+        ("site", "<u4"),
+        ("begin_steady", "<i8"),
+        ("cmp", "<f8"),
+        ("thresh", "<f8"),
+        ("end_steady", "<i8"),
+        ("period", "<u4"),
+        ("thread", "<u4"),
+        *((name, "<u8") for name in ("count", "odd", "far")),
+        *((name, "<f8") for name in ("diff_min", "diff_max", "diff_sum", "abs_sum")),
+        *((name, "<f8") for name in ("low", "high")),
+        ("flops", "<u8"),
+        ("begin_ros", "<i8"),
+        ("end_ros", "<i8"),
+        ("spare", "<u8", 2),
+    ]
+)
+SLOT = np.dtype([("kept", KEPT), ("begun", "<u8"), ("spare", "<u8", 3)])
+
+
+def _whole_bytes(count: int) -> int:
+    """How many of the first ``count`` bytes of a chunk are its header and whole records."""
+    return max(0, count - (count - layout.CHUNK_HEADER_BYTES) % layout.RECORD_BYTES)
+
+
+@dataclass(frozen=True, slots=True)
+class FileHeader:
+    """The header of the file; times in ns of the clocks of its machine."""
+
+    pid: int
+    steady_ns: int
+    real_ns: int
+    state: int
+    not_recorded: int
+    parent: int
+    node: str
+    host: str
+    program: str
+
+    @classmethod
+    def of(cls, data: bytes) -> FileHeader:
+        """Read it.
+
+        Raises:
+            ValueError: the bytes are too few, or no such header.
+        """
+        if len(data) < layout.HEADER_BYTES:
+            raise ValueError(f"the file ends at byte {len(data)}, within its header")
+        magic, size, record, chunk, pid, steady, real, state, _, lost, parent, _, *texts = (
+            layout.HEADER.unpack_from(data)
+        )
+        if magic != layout.MAGIC:
+            raise ValueError("its first bytes are not those of a .tpc file")
+        if (size, record, chunk) != (layout.HEADER_BYTES, layout.RECORD_BYTES, layout.CHUNK_BYTES):
+            raise ValueError(
+                f"header, record and chunk of {size}, {record} and {chunk} bytes are not of this"
+                " version"
+            )
+        node, host, program = (
+            text.partition(b"\0")[0].decode("utf-8", "replace") for text in texts
+        )
+        return cls(pid, steady, real, state, lost, parent, node, host, program)
 
 
 @dataclass
@@ -81,7 +149,6 @@ class ChunkFile:
     """
 
     def __init__(self, path: Path, descriptor: int) -> None:
-        """See the class; nothing is read yet."""
         self._path = path
         self._descriptor = descriptor
         self._buffer = np.empty((GROUP, layout.CHUNK_BYTES), np.uint8)
@@ -139,7 +206,7 @@ class ChunkFile:
             flat = buffer[row : last + 1].reshape(-1)
             count = os.preadv(self._descriptor, [flat.data], place)
             flat[count:] = 0
-            whole = whole_bytes(count % layout.CHUNK_BYTES)
+            whole = _whole_bytes(count % layout.CHUNK_BYTES)
             if count < flat.size and whole < count % layout.CHUNK_BYTES:
                 # The record at which the file ends is not whole, whatever its first word says.
                 begin = count - count % layout.CHUNK_BYTES + whole
@@ -149,7 +216,7 @@ class ChunkFile:
     def load_one(self, place: int) -> Bytes:
         """uint8[n], n at most 65536: what there is of one chunk, in whole records."""
         there = min(layout.CHUNK_BYTES, self.size - place)
-        chunk: Bytes = self.load([place])[0][: whole_bytes(there)]
+        chunk: Bytes = self.load([place])[0][: _whole_bytes(there)]
         return chunk
 
 

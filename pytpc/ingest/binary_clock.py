@@ -60,10 +60,6 @@ class Clock:
         parts = zip(begins, ends, range(first, last + 1), strict=True)
         return np.concatenate([self._between(steady[b:e], at) for b, e, at in parts if b < e])
 
-    def at(self, steady: int) -> int:
-        """Real time at one moment."""
-        return int(self.real(np.array([steady], np.int64))[0])
-
     def _place(self, steady: int) -> int:
         return max(0, int(np.searchsorted(self.steady, steady, "right")) - 1)
 

@@ -5,14 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from pytpc.base.columns import Bools, Int32s
+from pytpc.ingest.binary_chunks import KEPT, RECORD, SLOT
 from pytpc.ingest.binary_clock import Clock
-from pytpc.ingest.binary_layout import KEPT, RECORD, SLOT
 from pytpc.ingest.gathering import SUMMARY_ROW, Gathering
 from pytpc.ingest.spool import Rows
 from pytpc.python_runtime import log_layout as layout
@@ -111,26 +110,14 @@ def open_summaries(chunk: Chunk) -> tuple[Rows, int]:
     return used["kept"].copy(), int(np.count_nonzero(used["begun"] != used["kept"]["count"]))
 
 
-class SummaryOrigin(NamedTuple):
-    """The file that summaries are from.
-
-    ``clock`` is taken where a summary has no ROS time of its own, ``last_ns`` is the end of periods
-    that are open; ``node`` and ``channel`` are the codes of these.
-    """
-
-    clock: Clock
-    last_ns: int
-    node: int
-    channel: int
-
-
-def summary_rows(kept: Rows, origin: SummaryOrigin, key_of_site: Int32s, skip: Skip) -> Rows:
-    """Rows of ``SUMMARY_ROW`` for the summaries ``kept``.
+def summary_rows(kept: Rows, key_of_site: Int32s, clock: Clock, last_ns: int, skip: Skip) -> Rows:
+    """Rows of ``SUMMARY_ROW``, but for node and channel, for the summaries ``kept``.
 
     Args:
         kept: of type ``KEPT``.
-        origin: the file that they are from.
         key_of_site: int32[n]: the code of each site's key, -1 where there is none.
+        clock: gives the times of summaries that have no ROS time of their own.
+        last_ns: the end of periods that are open.
         skip: is told what is wrong with a summary that is left out.
     """
     kept = kept[_sound(kept, key_of_site.size, skip)]
@@ -142,10 +129,8 @@ def summary_rows(kept: Rows, origin: SummaryOrigin, key_of_site: Int32s, skip: S
     for name in (*_AS_THEY_ARE, *_COUNTS):
         rows[name] = kept[name]
     begin, end = kept["begin_ros"], kept["end_ros"]
-    rows["begin_ns"] = np.where(begin != 0, begin, origin.clock.real(kept["begin_steady"]))
-    real_end = np.where(
-        kept["end_steady"] != 0, origin.clock.real(kept["end_steady"]), origin.last_ns
-    )
+    rows["begin_ns"] = np.where(begin != 0, begin, clock.real(kept["begin_steady"]))
+    real_end = np.where(kept["end_steady"] != 0, clock.real(kept["end_steady"]), last_ns)
     rows["end_ns"] = np.maximum(rows["begin_ns"], np.where(end != 0, end, real_end))
     finite = (kept["count"] - kept["odd"]).astype(np.float64)
     finite[finite == 0] = np.nan
@@ -155,8 +140,6 @@ def summary_rows(kept: Rows, origin: SummaryOrigin, key_of_site: Int32s, skip: S
     for name in ("diff_min", "diff_max", "low", "high"):
         rows[name][np.isnan(finite)] = np.nan
     rows["key"] = keys
-    rows["node"] = origin.node
-    rows["channel"] = origin.channel
     rows["result"] = (kept["what"] & 0x100) != 0
     rows["res"] = (kept["what"] & 0x200) != 0
     return rows

@@ -1,7 +1,7 @@
 """Parses thousands of lines of text into columns at once, without a loop in Python.
 
-What is read here is read exactly as ``rosout_line`` reads it. A block of lines in which one line
-is not as expected is halved until the odd lines stand alone; those are left to ``rosout_line``.
+It reads lines exactly as ``rosout_line`` does. A block with an unexpected line is halved until the
+unexpected lines are alone; ``rosout_line`` reads those.
 """
 
 from __future__ import annotations
@@ -15,22 +15,18 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.csv as pacsv
 
-from pytpc.base.columns import Bools, Floats, Int32s, Int64s
+from pytpc.base.columns import WORDS, Bools, Floats, Int32s, Int64s, words_and_codes
+from pytpc.ingest.rosout_line import BOOLS, DOUBLE, KEY, TIME
 
 LINES = 1 << 15
 _ALONE = 16
-_KEY = "^[0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12}$"
-_DOUBLE = r"[-+]?(?:[0-9]+(?:\.[0-9]*)?(?:[eE][-+]?[0-9]+)?|\.[0-9]+(?:[eE][-+]?[0-9]+)?|inf|nan)$"
-_TIME = r"^[0-9]{1,10}\.[0-9]{1,9}$"
-_WORDS = pa.dictionary(pa.int32(), pa.string())
 _REPORT_TYPES = {
-    "key": _WORDS,
-    "result": _WORDS,
+    "key": WORDS,
+    "result": WORDS,
     "cmp": pa.string(),
     "thresh": pa.string(),
-    "res": _WORDS,
+    "res": WORDS,
 }
-_BOOLS = {"0": False, "1": True, "False": False, "True": True}
 
 
 class _Odd(Exception):
@@ -39,7 +35,7 @@ class _Odd(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Columns:
-    """Reports of the lines ``begin`` to ``end`` of what was given.
+    """Reports of the given lines ``begin`` to ``end``.
 
     ``key`` is codes into ``keys``; ``time_ns`` is None where the lines have no time.
     """
@@ -59,8 +55,8 @@ def read_lines(lines: Sequence[bytes], *, stamped: bool) -> Iterator[Columns | i
     """Read ``[TIME,]KEY,RESULT,cmp:C,thresh:T,res:R`` in each of ``lines``.
 
     Yields:
-        Columns of lines that follow one another, and the number of each line that is not as
-        expected here (it may be one all the same: white space at its end), in order.
+        Columns of consecutive lines, and the number of each unexpected line, in order. Such a line
+        may still be a report, for example one with white space at its end.
     """
     yield from _halved(lines, 0, len(lines), stamped)
 
@@ -116,16 +112,9 @@ def _table(lines: Sequence[bytes], begin: int, end: int, stamped: bool) -> pa.Ta
     return table
 
 
-def _words(column: pa.ChunkedArray) -> tuple[list[str], Int32s]:
-    whole = column.unify_dictionaries().combine_chunks()
-    if isinstance(whole, pa.ChunkedArray):
-        whole = pa.concat_arrays(whole.chunks)
-    return whole.dictionary.to_pylist(), whole.indices.to_numpy(zero_copy_only=False)
-
-
 def _key_codes(column: pa.ChunkedArray) -> tuple[list[str], Int32s]:
-    words, codes = _words(column)
-    if not pc.all(pc.match_substring_regex(pa.array(words, pa.string()), _KEY)).as_py():
+    words, codes = words_and_codes(column)
+    if not pc.all(pc.match_substring_regex(pa.array(words, pa.string()), f"^{KEY}$")).as_py():
         raise _Odd
     # The same key in small and capital letters is one key.
     keys = list(dict.fromkeys(word.lower() for word in words))
@@ -136,15 +125,15 @@ def _key_codes(column: pa.ChunkedArray) -> tuple[list[str], Int32s]:
 
 
 def _bools(column: pa.ChunkedArray, prefix: str = "") -> Bools:
-    words, codes = _words(column)
-    values = [_BOOLS.get(w[len(prefix) :]) if w.startswith(prefix) else None for w in words]
+    words, codes = words_and_codes(column)
+    values = [BOOLS.get(w[len(prefix) :]) if w.startswith(prefix) else None for w in words]
     if None in values:
         raise _Odd
     return np.array(values, np.bool_)[codes]
 
 
 def _doubles(column: pa.ChunkedArray, prefix: str) -> Floats:
-    if not pc.all(pc.match_substring_regex(column, f"^{prefix}{_DOUBLE}")).as_py():
+    if not pc.all(pc.match_substring_regex(column, f"^{prefix}{DOUBLE}$")).as_py():
         raise _Odd
     texts = pc.utf8_slice_codeunits(column, len(prefix))
     try:
@@ -158,7 +147,7 @@ def _doubles(column: pa.ChunkedArray, prefix: str) -> Floats:
 
 
 def _times(column: pa.ChunkedArray) -> Int64s:
-    if not pc.all(pc.match_substring_regex(column, _TIME)).as_py():
+    if not pc.all(pc.match_substring_regex(column, f"^{TIME}$")).as_py():
         raise _Odd
     decimals = pc.cast(column, pa.decimal128(19, 9)).combine_chunks()
     if isinstance(decimals, pa.ChunkedArray):

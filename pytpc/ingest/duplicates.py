@@ -1,12 +1,13 @@
 """Reports that arrived by more than one way are counted once.
 
-Two rules. What a node is known to pass on is left out whole: of a node that reports on /rosout
-nothing is taken from /rosout_agg, and of a key that is in the log messages of a file nothing from
-its /threshold_information, unless the publisher there reports on /rosout itself, or numbers its
-messages (a sink of TPC's own, not a converter). Everything else that could be twice is compared
-report by report: two are the same where node, key, values and results are equal and their times
-are within the tolerance, one to one; never those of two processes' files. The node does not count
-where a way does not tell it (converters, console text).
+There are two rules. First, reports that were only passed on are left out. If a node reports on
+/rosout, nothing is taken from it on /rosout_agg. If a key is in the log messages of a file, nothing
+is taken of it from /threshold_information, unless the publisher there reports on /rosout itself or
+numbers its messages (a sink of TPC, not a converter). Second, all other possible duplicates are
+compared one by one. Two reports are the same if node, key, values and results are equal and their
+times are within the tolerance. Each report has at most one partner, never one from the file of
+another process. The node is not compared where a channel does not tell it (converters, console
+text).
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from pytpc.ingest.spool import Rows
 TOLERANCE_NS = 10**6
 APART_NS = 60 * 10**9
 _MOST_HELD = 1 << 22
-# The way of which reports are kept comes first.
+# Reports are kept from the way that comes first.
 _ORDER: tuple[Way, ...] = ("log", "file", "batch", "events", "aggregate", "text", "topic")
 _NAMELESS: frozenset[Way] = frozenset({"topic", "text"})
 
@@ -69,10 +70,8 @@ class Once:
             )
             notes.append(f"{many(count, 'report')} on {channel.topic} {why}: counted once")
         for code, count in sorted(self._matched.items()):
-            channel = channels[code]
-            notes.append(
-                f"{many(count, 'report')} in {channel.name} that came another way too: counted once"
-            )
+            what = f"{many(count, 'report')} in {channels[code].name}"
+            notes.append(f"{what} that also came another way: counted once")
         return notes
 
     def _not_passed_on(self, blocks: Iterable[Rows]) -> Iterator[Rows]:
@@ -135,7 +134,7 @@ class Once:
             yield held[~twice]
 
     def _match(self, rows: Rows, twice: Bools, used: Bools, step: _Step) -> None:
-        """Mark in ``twice`` the reports of ``step.later`` that have a partner; both in ``used``."""
+        """Note in ``twice`` the reports of ``step.later`` with a partner, in ``used`` both."""
         channel = rows["channel"]
         is_later = channel == step.later
         among = np.flatnonzero((is_later | step.earlier[channel]) & ~twice & ~used)
@@ -144,7 +143,7 @@ class Once:
         order = np.lexsort((is_later[among], times, signature))
         among, signature, times = among[order], signature[order], times[order]
         while among.size > 1:
-            # Neighbours of both sides; of a chain of such pairs every second one is taken.
+            # Neighbours from both sides; in a chain of such pairs every second pair is taken.
             near = times[1:] - times[:-1] <= self._tolerance_ns
             pairs = np.flatnonzero(
                 near
@@ -167,8 +166,7 @@ class Once:
 
 
 def clock_notes(channels: list[Channel]) -> Iterator[str]:
-    """Notes on sources that lie apart in time: nothing tells whether it is the clock's
-    doing."""
+    """Notes on sources that are far apart in time, which may be due to their clocks."""
     spans: dict[str, tuple[int, int]] = {}
     for channel in channels:
         if channel.count:
@@ -180,7 +178,7 @@ def clock_notes(channels: list[Channel]) -> Iterator[str]:
         if before and first - end > APART_NS:
             yield (
                 f"{source} begins {(first - end) / 1e9:,.0f} s after {before} ends: on different"
-                " clocks, or one after the other? Their times are taken as they are"
+                " clocks, or one after the other? Their times are used as they are"
             )
         if not before or last > end:
             end, before = last, source

@@ -1,18 +1,13 @@
-"""A folder that ``pytpc convert`` wrote, as one source among others."""
+"""Reads folders that ``pytpc convert`` wrote."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-
 from pytpc.base.columns import read_parts
-from pytpc.base.errors import InputError
-from pytpc.ingest.gathering import SUMMARY_ROW, Gathering, Progress, ReportColumns
-from pytpc.recording import events as event_table
-from pytpc.recording import summaries as summary_table
+from pytpc.ingest.gathering import Gathering, Progress, ReportColumns
 from pytpc.recording.events import Events
-from pytpc.recording.mission import EVENTS_FILE, SUMMARIES_FILE, read_marks
+from pytpc.recording.mission import EVENTS_FILE, SUMMARIES_FILE, check_rows, read_marks_json
 from pytpc.recording.summaries import Summaries
 
 _ROWS = 1 << 18
@@ -21,15 +16,15 @@ _ROWS = 1 << 18
 def read_folder_into(
     folder: Path, gathering: Gathering, on_progress: Progress | None = None
 ) -> None:
-    """Read an ingested folder, some rows at a time.
+    """Read a converted folder, some rows at a time.
 
     Raises:
         InputError: a file is missing or broken, or the files are not of one recording.
     """
-    recording, events, summaries = read_marks(folder)
+    recording, events, summaries = read_marks_json(folder)
     channel = gathering.channel(str(folder), "events")
     done = 0
-    for table in read_parts(folder / EVENTS_FILE, "events", event_table.SCHEMA, _ROWS):
+    for table in read_parts(folder / EVENTS_FILE, "events", Events.schema, _ROWS):
         part = Events.from_arrow(table)
         key = gathering.keys.all(part.keys)[part.key]
         node = gathering.nodes.all(part.nodes)[part.node]
@@ -38,21 +33,14 @@ def read_folder_into(
         done += len(part)
         if on_progress is not None:
             on_progress(done, max(done, events))
-    _check(folder / EVENTS_FILE, events, done)
+    check_rows(folder, EVENTS_FILE, events, done)
     done = 0
     if summaries:
         path = folder / SUMMARIES_FILE
-        for table in read_parts(path, "summaries", summary_table.SCHEMA, _ROWS):
-            rows = Summaries.from_arrow(table)
-            made = np.zeros(len(rows), SUMMARY_ROW)
-            for name, column in rows.columns().items():
-                made[name] = column
-            made["key"] = gathering.keys.all(rows.keys)[rows.key]
-            made["node"] = gathering.nodes.all(rows.nodes)[rows.node]
-            made["channel"] = channel.code
-            gathering.add_summary_rows(made)
-            done += len(rows)
-        _check(path, summaries, done)
+        for table in read_parts(path, "summaries", Summaries.schema, _ROWS):
+            gathering.add_summaries(channel.code, Summaries.from_arrow(table))
+            done += table.num_rows
+        check_rows(folder, SUMMARIES_FILE, summaries, done)
     gathering.marks += recording.marks
     gathering.notes += recording.notes
     gathering.spans.append((recording.start_ns, recording.end_ns))
@@ -62,8 +50,3 @@ def read_folder_into(
     for record in recording.malformed_first:
         gathering.skip(record.topic, record.time_ns, record.what, record.text)
     gathering.malformed += recording.malformed - len(recording.malformed_first)
-
-
-def _check(path: Path, said: int, found: int) -> None:
-    if said != found:
-        raise InputError(f"has {found} rows, but marks.json says {said}", path)

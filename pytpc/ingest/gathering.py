@@ -14,41 +14,25 @@ from typing import Literal
 
 import numpy as np
 
-from pytpc.base.columns import Bools, Floats, Int32s, Int64s
-from pytpc.ingest.spool import RUN_ROWS, Rows, Spool
+from pytpc.base.columns import Bools, Floats, Int32s, Int64s, WordTable
+from pytpc.ingest.spool import RUN_ROWS, Spool
+from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark, MarkMessages
 from pytpc.recording.mission import Dropped, MalformedRecord
-from pytpc.recording.summaries import Summary
+from pytpc.recording.summaries import Summaries, Summary
 
 Progress = Callable[[int, int], None]
 Way = Literal["log", "aggregate", "topic", "batch", "file", "text", "events"]
 
-EVENT_ROW = np.dtype(
-    [
-        ("time_ns", "<i8"),
-        ("cmp", "<f8"),
-        ("thresh", "<f8"),
-        ("key", "<i4"),
-        ("node", "<i4"),
-        ("channel", "<u2"),
-        ("result", "?"),
-        ("res", "?"),
-    ]
-)
-SUMMARY_ROW = np.dtype(
-    [
-        ("begin_ns", "<i8"),
-        ("end_ns", "<i8"),
-        *((name, "<i8") for name in ("count", "flops", "far", "odd")),
-        *((name, "<f8") for name in ("cmp", "thresh", "diff_min", "diff_max", "diff_mean")),
-        *((name, "<f8") for name in ("abs_mean", "low", "high")),
-        ("key", "<i4"),
-        ("node", "<i4"),
-        ("channel", "<u2"),
-        ("result", "?"),
-        ("res", "?"),
-    ]
-)
+
+def _row(table: type[WordTable]) -> np.dtype[np.void]:
+    """A row of a table with its channel; the wide columns come first, which aligns them."""
+    columns: list[tuple[str, type[np.generic]]] = [*table.kinds.items(), ("channel", np.uint16)]
+    return np.dtype(sorted(columns, key=lambda column: -np.dtype(column[1]).itemsize))
+
+
+EVENT_ROW = _row(Events)
+SUMMARY_ROW = _row(Summaries)
 _SHOWN = 20
 _SHOWN_TEXT = 200
 _HELD_SUMMARIES = 4096
@@ -60,7 +44,6 @@ class WordCodes:
     """Words and their codes, in the order of their first use."""
 
     def __init__(self) -> None:
-        """None yet."""
         self.codes: dict[str, int] = {}
 
     def code(self, word: str) -> int:
@@ -88,9 +71,9 @@ class ReportColumns:
 class Channel:
     """One way by which reports arrived.
 
-    ``source`` is the file or folder as it was named, ``way`` which kind of channel of it this is,
-    ``topic`` its name for messages. ``pairs`` has what was seen on it, as (key, node) codes.
-    ``process`` tells the process from all others where all reports are of one.
+    ``source`` is the file or folder as given, ``way`` the kind of channel, ``topic`` its name in
+    messages. ``pairs`` are the (key, node) codes seen on it. ``process`` identifies the process if
+    all reports are of one.
     """
 
     code: int
@@ -110,11 +93,11 @@ class Channel:
 
 
 class Gathering:
-    """All that was read.
+    """Everything that was read.
 
     ``spans`` are the times of recordings on their own clock; ``notes`` and ``late_notes`` are for
-    the user, before and behind those about duplicates; ``without_reports`` are text files in which
-    no line is one.
+    the user, before and after those about duplicates; ``without_reports`` are text files without a
+    report.
 
     Args:
         folder: where rows that are too many for memory are kept; None: all stays in memory.
@@ -122,7 +105,6 @@ class Gathering:
     """
 
     def __init__(self, folder: Path | None = None, run_rows: int = RUN_ROWS) -> None:
-        """Nothing was read yet."""
         self.keys = WordCodes()
         self.nodes = WordCodes()
         self.channels: list[Channel] = []
@@ -147,7 +129,8 @@ class Gathering:
         self.notes: list[str] = []
         self.late_notes: list[str] = []
         self.spans: list[tuple[int, int]] = []
-        self._held: list[tuple[object, ...]] = []
+        self._held: dict[int, list[Summary]] = {}
+        self._held_count = 0
 
     def channel(self, source: str, way: Way, topic: str = "") -> Channel:
         """A new channel.
@@ -160,13 +143,8 @@ class Gathering:
         self.channels.append(Channel(len(self.channels), source, way, topic))
         return self.channels[-1]
 
-    def turn(self) -> int:
-        """A number for the order in which records came."""
-        self._turn += 1
-        return self._turn
-
     def turns(self, count: int) -> range:
-        """So many of them."""
+        """Numbers for this many records, in the order in which they came."""
         self._turn += count
         return range(self._turn - count + 1, self._turn + 1)
 
@@ -202,15 +180,19 @@ class Gathering:
 
     def add_summary(self, channel: Channel, summary: Summary) -> None:
         """Take in a summary."""
-        values = [getattr(summary, name) for name in SUMMARY_ROW.names or ()
-                  if name not in {"key", "node", "channel", "result", "res"}]  # fmt: skip
-        key, node = self.keys.code(summary.key), self.nodes.code(summary.node)
-        self._held.append((*values, key, node, channel.code, summary.result, summary.res))
-        if len(self._held) >= _HELD_SUMMARIES:
+        self._held.setdefault(channel.code, []).append(summary)
+        self._held_count += 1
+        if self._held_count >= _HELD_SUMMARIES:
             self.flush()
 
-    def add_summary_rows(self, rows: Rows) -> None:
-        """Add summaries as rows of ``SUMMARY_ROW``."""
+    def add_summaries(self, channel: int, table: Summaries) -> None:
+        """Take in the summaries of the channel with this code."""
+        rows = np.empty(len(table), SUMMARY_ROW)
+        for name, column in table.columns().items():
+            rows[name] = column
+        rows["key"] = self.keys.all(table.keys)[table.key]
+        rows["node"] = self.nodes.all(table.nodes)[table.node]
+        rows["channel"] = channel
         self.summaries.append(rows)
 
     def add_dropped(self, dropped: Dropped) -> None:
@@ -222,7 +204,7 @@ class Gathering:
     def skip(self, topic: str, time_ns: int, what: str, text: str, turn: int | None = None) -> None:
         """Count a record that cannot be read; the first 20 are kept, in the order of ``turn``."""
         self.malformed += 1
-        turn = self.turn() if turn is None else turn
+        turn = self.turns(1)[0] if turn is None else turn
         if len(self._first) == _SHOWN and turn > self._first[-1][0]:
             return
         self._first.append((turn, MalformedRecord(topic, time_ns, what, text[:_SHOWN_TEXT])))
@@ -230,10 +212,10 @@ class Gathering:
         del self._first[_SHOWN:]
 
     def flush(self) -> None:
-        """Nothing is held back after this."""
-        if self._held:
-            self.summaries.append(np.array(self._held, SUMMARY_ROW))
-            self._held = []
+        """Hand on the summaries that are still held."""
+        for channel, summaries in self._held.items():
+            self.add_summaries(channel, Summaries.of_rows(summaries))
+        self._held, self._held_count = {}, 0
 
     @property
     def malformed_first(self) -> tuple[MalformedRecord, ...]:

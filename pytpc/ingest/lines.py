@@ -9,24 +9,36 @@ import numpy as np
 
 from pytpc.ingest.bulk_lines import LINES, read_lines
 from pytpc.ingest.gathering import Channel, Gathering, ReportColumns
-from pytpc.ingest.rosout_line import PREFIX, BatchHead, Drop, Malformed, parse_report, parse_stamped
+from pytpc.ingest.losses import LossCounter
+from pytpc.ingest.rosout_line import (
+    PREFIX,
+    BatchHead,
+    Drop,
+    Malformed,
+    as_text,
+    parse_other,
+    parse_report,
+    parse_stamped,
+)
 from pytpc.recording.events import Report
 from pytpc.recording.mission import Dropped
+from pytpc.recording.summaries import Summary
 
 
 class Lines:
     """Reads the text reports of one channel, thousands at a time.
 
-    ``stamped`` says that each line begins with its own time; that of ``add`` then counts only where
-    this is 0, or the line is broken.
+    With ``stamped`` each line begins with its own time. The time given to ``add`` then counts only
+    if the line's own is 0, or the line is malformed.
     """
 
     def __init__(
-        self, gathering: Gathering, channel: Channel, *, stamped: bool, prefix: str = ""
+        self, batches: Batches, channel: Channel, *, stamped: bool, prefix: str = ""
     ) -> None:
-        """``prefix`` stood before what ``add`` gets, and stands there in complaints."""
-        self.gathering = gathering
+        """``prefix`` was cut off the lines that ``add`` gets; messages about them show it."""
+        self.gathering = batches.gathering
         self.channel = channel
+        self._batches = batches
         self._stamped = stamped
         self._prefix = prefix
         self._lines: list[bytes] = []
@@ -41,7 +53,7 @@ class Lines:
         self._lines.append(line)
         self._times.append(time_ns)
         self._nodes.append(node)
-        self._turns.append(self.gathering.turn())
+        self._turns += self.gathering.turns(1)
         self._places.append(number)
         if len(self._lines) >= LINES:
             self.flush()
@@ -61,6 +73,17 @@ class Lines:
         self._places += numbers or [0] * len(lines)
         if len(self._lines) >= LINES:
             self.flush()
+
+    def add_other(self, text: str, node: str, time_ns: int = 0, number: int = 0) -> None:
+        """Read a line about a summary or about dropped reports; ``time_ns`` is for complaints."""
+        found = parse_other(text, node, stamped=self._stamped)
+        if isinstance(found, Summary):
+            self.gathering.add_summary(self.channel, found)
+        elif isinstance(found, Drop):
+            self._batches.drop(node, found)
+        else:
+            what = "time is missing" if found is None else f"{found.what}, column {found.column}"
+            self._skip(what, time_ns, text, number)
 
     def flush(self) -> None:
         """Hand in everything that was added."""
@@ -86,7 +109,7 @@ class Lines:
 
     def _alone(self, number: int) -> None:
         """Read one line strictly."""
-        text = self._lines[number].decode("utf-8", "replace")
+        text = as_text(self._lines[number])
         time_ns = self._times[number]
         found: Report | Malformed | None
         if self._stamped:
@@ -94,9 +117,9 @@ class Lines:
             if isinstance(stamped, Malformed):
                 found = stamped
             else:
-                found = stamped.report
-                self.unstamped += not stamped.time_ns
-                time_ns = stamped.time_ns or time_ns
+                stamp_ns, found = stamped
+                self.unstamped += not stamp_ns
+                time_ns = stamp_ns or time_ns
         else:
             found = parse_report(PREFIX + text)
         if isinstance(found, Report):
@@ -111,32 +134,30 @@ class Lines:
             self.gathering.add_events(self.channel, self._nodes[number], reports)
             return
         what = "no report" if found is None else f"{found.what}, column {found.column}"
-        if self._places[number]:
-            what = f"line {self._places[number]}: {what}"
-        self.gathering.skip(
-            self.channel.topic, time_ns, what, self._prefix + text, self._turns[number]
-        )
+        text = self._prefix + text
+        self._skip(what, time_ns, text, self._places[number], self._turns[number])
+
+    def _skip(
+        self, what: str, time_ns: int, text: str, number: int, turn: int | None = None
+    ) -> None:
+        if number:
+            what = f"line {number}: {what}"
+        self.gathering.skip(self.channel.topic, time_ns, what, text, turn)
 
 
 @dataclass
 class Batches:
-    """Keeps track of numbered messages of several lines: what is missing, what was dropped."""
+    """Counts what is missing and what was dropped in numbered messages of several lines."""
 
     gathering: Gathering
-    next_seq: dict[tuple[str, int], int] = field(default_factory=dict)
+    losses: LossCounter[str] = field(default_factory=LossCounter)
     dropped: dict[tuple[str, int], int] = field(default_factory=dict)
     told: Counter[str] = field(default_factory=Counter)
-    missed: Counter[str] = field(default_factory=Counter)
 
     def see(self, node: str, batch: BatchHead) -> None:
         """Add the first line of a message."""
         process = (node, batch.pid)
-        expected = self.next_seq.get(process)
-        if expected is None:
-            self.missed[node] += batch.seq
-        elif batch.seq > expected:
-            self.gathering.lost[node] += batch.seq - expected
-        self.next_seq[process] = max(expected or 0, batch.seq + batch.count)
+        self.losses.see_batch(node, batch)
         self.dropped[process] = max(self.dropped.get(process, 0), batch.dropped)
 
     def drop(self, node: str, drop: Drop) -> None:
@@ -145,7 +166,7 @@ class Batches:
         self.gathering.add_dropped(Dropped(drop.key, node, drop.count, drop.flops, drop.why))
 
     def close(self) -> None:
-        """Hand in dropped reports that are in the totals but in no line."""
+        """Add the dropped reports that only the totals count."""
         totals: Counter[str] = Counter()
         for (node, _), count in self.dropped.items():
             totals[node] += count
@@ -153,8 +174,8 @@ class Batches:
             if total > self.told[node]:
                 rest = total - self.told[node]
                 self.gathering.add_dropped(Dropped("", node, rest, 0, "unknown"))
-        for node, count in sorted(self.missed.items()):
-            if count:
-                self.gathering.late_notes.append(
-                    f"{count:,} reports of {node} were sent before its first one here"
-                )
+        self.gathering.lost.update(self.losses.lost)
+        self.gathering.late_notes += [
+            f"{count:,} reports of {node} were sent before its first one here"
+            for node, count in sorted(self.losses.missed_before.items())
+        ]

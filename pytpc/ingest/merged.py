@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -14,16 +14,14 @@ import pyarrow as pa
 from pytpc.base.atomic import replacing
 from pytpc.base.columns import recode, sorted_words, table_writer, to_arrow
 from pytpc.ingest.duplicates import APART_NS, TOLERANCE_NS, Once, clock_notes
-from pytpc.ingest.gathering import SUMMARY_ROW, Gathering
+from pytpc.ingest.gathering import EVENT_ROW, SUMMARY_ROW, Gathering, Progress
 from pytpc.ingest.spool import Rows
-from pytpc.recording import events as event_table
-from pytpc.recording import summaries as summary_table
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark, joined
-from pytpc.recording.mission import EVENTS_FILE, SUMMARIES_FILE, Recording, write_marks
+from pytpc.recording.mission import EVENTS_FILE, SUMMARIES_FILE, Recording, write_marks_json
 from pytpc.recording.summaries import Summaries
 
-Told = Callable[[int, int], None]
+_Table = TypeVar("_Table", Events, Summaries)
 
 
 @dataclass
@@ -48,7 +46,7 @@ class Merged:
 
     @property
     def comparisons(self) -> int:
-        """How many keys the events had that were returned."""
+        """How many different keys the returned events have."""
         return int(np.count_nonzero(self._seen))
 
     def event_blocks(self) -> Iterator[Rows]:
@@ -88,10 +86,8 @@ class Merged:
 
     def recording(self) -> Recording:
         """All of it in memory."""
-        blocks = list(self.event_blocks())
-        events = Events.of(**_columns(blocks, event_table.SCHEMA, self._words()))
-        parts = list(self.summary_blocks())
-        summaries = Summaries.of(**_columns(parts, summary_table.SCHEMA, self._words()))
+        events = self._table(Events, [np.empty(0, EVENT_ROW), *self.event_blocks()])
+        summaries = self._table(Summaries, [np.empty(0, SUMMARY_ROW), *self.summary_blocks()])
         return self.rest(_used(events), summaries)
 
     def rest(self, events: Events, summaries: Summaries) -> Recording:
@@ -120,25 +116,25 @@ class Merged:
             dropped=gathering.dropped_list,
         )
 
-    def save(self, folder: Path, told: Told | None = None) -> Recording:
+    def save(self, folder: Path, told: Progress | None = None) -> Recording:
         """Write a converted folder block by block; the tables of the result are empty.
 
         Raises:
             TpcError: a file cannot be written; ``marks.json`` is written last.
         """
-        self._parquet(folder / EVENTS_FILE, event_table.SCHEMA, self.event_blocks(), told)
+        self._parquet(folder / EVENTS_FILE, Events.schema, self.event_blocks(), told)
         if len(self.gathering.summaries):
-            self._parquet(folder / SUMMARIES_FILE, summary_table.SCHEMA, self.summary_blocks())
+            self._parquet(folder / SUMMARIES_FILE, Summaries.schema, self.summary_blocks())
         rest = self.rest(Events.empty(), Summaries.empty())
-        write_marks(rest, folder, self.events, self.summaries)
+        write_marks_json(rest, folder, self.events, self.summaries)
         return rest
 
-    def save_parquet(self, path: Path, told: Told | None = None) -> Recording:
+    def save_parquet(self, path: Path, told: Progress | None = None) -> Recording:
         """Write only the events; see ``save``."""
-        self._parquet(path, event_table.SCHEMA, self.event_blocks(), told)
+        self._parquet(path, Events.schema, self.event_blocks(), told)
         return self.rest(Events.empty(), Summaries.empty())
 
-    def save_csv(self, path: Path, told: Told | None = None) -> Recording:
+    def save_csv(self, path: Path, told: Progress | None = None) -> Recording:
         """Write the events as CSV in the thesis's form, without nodes; see ``save``."""
         total = max(1, len(self.gathering.events))
         with replacing(path) as staged, staged.open("w", encoding="ascii") as stream:
@@ -149,7 +145,8 @@ class Merged:
         return self.rest(Events.empty(), Summaries.empty())
 
     def _lines(self, rows: Rows) -> Iterator[str]:
-        for time_ns, cmp, thresh, key, _, _, result, res in rows.tolist():
+        names = ["time_ns", "key", "result", "cmp", "thresh", "res"]
+        for time_ns, key, result, cmp, thresh, res in rows[names].tolist():
             seconds, rest = divmod(time_ns, 10**9)
             decimals = f"{rest:09d}".removesuffix("0").removesuffix("0")
             yield (
@@ -158,7 +155,7 @@ class Merged:
             )
 
     def _parquet(
-        self, path: Path, schema: pa.Schema, blocks: Iterator[Rows], told: Told | None = None
+        self, path: Path, schema: pa.Schema, blocks: Iterator[Rows], told: Progress | None = None
     ) -> None:
         total = max(1, len(self.gathering.events))
         with table_writer(path, schema) as write:
@@ -167,6 +164,10 @@ class Merged:
                 write(to_arrow(columns, self._words(), schema))
                 if told is not None:
                     told(self.events, total)
+
+    def _table(self, kind: type[_Table], blocks: list[Rows]) -> _Table:
+        columns = {name: np.concatenate([rows[name] for rows in blocks]) for name in kind.kinds}
+        return kind.of(**columns, keys=self.keys, nodes=self.nodes)
 
     def _words(self) -> dict[str, list[str]]:
         return {"key": self.keys, "node": self.nodes}
@@ -184,8 +185,8 @@ class Merged:
     def _span(self, marks: tuple[Mark, ...]) -> tuple[int, int]:
         """First and last time, on the clock of the reports.
 
-        A bag that was recorded on another clock (wall time, the robot on simulated time) says
-        nothing about it.
+        A bag that was recorded on another clock (wall time, while the robot ran on simulated time)
+        does not count.
         """
         times = self._times(marks)
         spans = self.gathering.spans
@@ -197,40 +198,25 @@ class Merged:
     def _clock_notes(self, marks: tuple[Mark, ...]) -> Iterator[str]:
         times = self._times(marks)
         if times and any(_apart(times, span) for span in self.gathering.spans):
-            yield "the bag was recorded on another clock than the reports'"
+            yield "the bag was recorded on another clock than the reports"
 
 
 def _apart(times: list[int], span: tuple[int, int]) -> bool:
     return min(times) > span[1] + APART_NS or max(times) < span[0] - APART_NS
 
 
-def _columns(blocks: list[Rows], schema: pa.Schema, words: dict[str, list[str]]) -> dict[str, Any]:
-    columns: dict[str, Any] = {
-        name: np.concatenate([rows[name] for rows in blocks]) if blocks else []
-        for name in schema.names
-    }
-    return {**columns, "keys": words["key"], "nodes": words["node"]}
-
-
 def _used(events: Events) -> Events:
     """The table without words that it does not use."""
     keys = [events.keys[code] for code in np.unique(events.key).tolist()]
     nodes = [events.nodes[code] for code in np.unique(events.node).tolist()]
-    return Events.of(
-        time_ns=events.time_ns,
-        key=recode(events.key, events.keys, keys),
-        result=events.result,
-        cmp=events.cmp,
-        thresh=events.thresh,
-        res=events.res,
-        node=recode(events.node, events.nodes, nodes),
-        keys=keys,
-        nodes=nodes,
-    )
+    columns = events.columns()
+    columns["key"] = recode(events.key, events.keys, keys)
+    columns["node"] = recode(events.node, events.nodes, nodes)
+    return Events.of(**columns, keys=keys, nodes=nodes)
 
 
 def _packed(rows: Rows) -> npt.NDArray[np.bytes_]:
-    """bytes[n]: all fields of each row, NaN and all."""
+    """bytes[n]: the bytes of all fields of each row."""
     packed = np.empty(rows.size, [(name, rows.dtype[name]) for name in rows.dtype.names or ()])
     for name in rows.dtype.names or ():
         packed[name] = rows[name]

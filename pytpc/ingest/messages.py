@@ -5,31 +5,28 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
+from typing import Protocol, TypeVar
 
 import numpy as np
 
-from pytpc.base.columns import Bools, Int64s
+from pytpc.base.columns import Bools
 from pytpc.base.wording import many
 from pytpc.ingest.bag_chunks import ChunkMessages as Chunk
-from pytpc.ingest.gathering import Channel, Gathering, Way
+from pytpc.ingest.gathering import Gathering, Way
 from pytpc.ingest.lines import Batches, Lines
+from pytpc.ingest.losses import LossCounter
 from pytpc.ingest.ros1 import LogMessage, decode_logs
 from pytpc.ingest.rosout_line import (
     DROPPED_PREFIX,
     PREFIX,
     SUMMARY_PREFIX,
-    Drop,
     Malformed,
+    as_text,
     parse_batch,
-    parse_other,
-    parse_stamped_other,
 )
 from pytpc.recording.marks import MarkMessages
-from pytpc.recording.mission import Dropped
-from pytpc.recording.summaries import Summary
 
 ROSOUT = "/rosout"
 ROSOUT_AGG = "/rosout_agg"
@@ -42,24 +39,60 @@ _OTHERS = (SUMMARY_PREFIX.encode(), DROPPED_PREFIX.encode())
 _WITH_TIME = tuple(f",{prefix}".encode() for prefix in (SUMMARY_PREFIX, DROPPED_PREFIX))
 
 
+class _AnyConnection(Protocol):
+    @property
+    def topic(self) -> str: ...
+    @property
+    def msgtype(self) -> str: ...
+
+
+_Connection = TypeVar("_Connection", bound=_AnyConnection)
+
+
 @dataclass(frozen=True, slots=True)
 class Decoders:
-    """How the three kinds of messages are read; each raises ValueError where bytes are missing."""
+    """Decodes the three kinds of messages; each raises ValueError if bytes are missing."""
 
     log: Callable[[bytes], LogMessage]
     text: Callable[[bytes], bytes]
     time: Callable[[bytes], int]
 
 
+def wanted(
+    connections: Iterable[_Connection], topics: Mapping[str, Set[str]], times: Set[str]
+) -> tuple[list[_Connection], list[str]]:
+    """The connections that carry reports or marks, and a note for each of another type.
+
+    Args:
+        connections: each with a topic and its type.
+        topics: the types of messages on each topic of reports.
+        times: the types of messages with the time of a mark.
+    """
+    found = []
+    notes = set()
+    for connection in connections:
+        expected = topics.get(connection.topic)
+        of_marks = MarkMessages.message_type(connection.topic)
+        if expected is None and of_marks is not None:
+            expected = times if of_marks == "Time" else topics[REPORTS]
+        if expected is None:
+            continue
+        if connection.msgtype in expected:
+            found.append(connection)
+        else:
+            kinds = " or ".join(sorted(expected))
+            notes.add(f"{connection.topic} carries {connection.msgtype}, not {kinds}: not read")
+    return found, sorted(notes)
+
+
 class _Unstamped:
     """Counts records without a stamp, except at the start of a node.
 
-    On simulated time a node has none until its first /clock; what it reports before has the bag's
-    time, and nothing is wrong. A node's beginning is the first second of its log in the bag.
+    On simulated time a node has no time until its first /clock. Its reports from before get the
+    bag's time, which is no fault. The start of a node is the first second of its log in the bag.
     """
 
     def __init__(self) -> None:
-        """Nothing was seen yet."""
         self.count = 0
         self._began_ns: dict[bytes, int] = {}
 
@@ -75,55 +108,6 @@ class _Unstamped:
         self.count += time_ns - self._began_ns[node] > _BEGINNING_NS
 
 
-@dataclass(frozen=True, slots=True)
-class _OtherLine:
-    """A summary or a count of what was dropped, as text, and where it stood."""
-
-    way: Way
-    topic: str
-    time_ns: int
-    node: str
-    text: str
-    number: int = 0
-
-
-class _Gaps:
-    """Finds gaps in numbered messages; a restarted sender counts from the start.
-
-    One missing number of each that is ``latched`` is no loss: see ``LossCounter.see``.
-    """
-
-    def __init__(self, latched: Set[bytes]) -> None:
-        self._last: dict[bytes, int] = {}
-        self._to_spare = set(latched)
-        self.lost: Counter[bytes] = Counter()
-
-    def see(self, name: bytes, seq: int) -> None:
-        last = self._last.get(name)
-        if last is not None and seq > last + 1:
-            self._step(name, np.array([seq - last]))
-        self._last[name] = seq
-
-    def see_all(self, names: list[bytes], seq: Int64s) -> None:
-        """The same for many messages in order."""
-        codes = {name: code for code, name in enumerate(dict.fromkeys(names))}
-        code_of = np.array([codes[name] for name in names], np.int32)
-        for name, code in codes.items():
-            own = seq[code_of == code]
-            last = self._last.get(name)
-            if last is not None:
-                own = np.concatenate([[last], own])
-            self._step(name, np.diff(own))
-            self._last[name] = int(own[-1])
-
-    def _step(self, name: bytes, steps: Int64s) -> None:
-        missing = int((steps[steps > 1] - 1).sum())
-        if name in self._to_spare and (steps == 2).any():
-            self._to_spare.remove(name)
-            missing -= 1
-        self.lost[name] += missing
-
-
 class Messages:
     """Reads the messages of one source.
 
@@ -132,7 +116,7 @@ class Messages:
         source: the file, for messages.
         decoders: for its serialisation.
         numbered: whether log messages have the publisher's own number (ROS 1).
-        latched: who sends the last log message to each new subscriber.
+        latched: senders that send their last message to each new subscriber.
     """
 
     def __init__(
@@ -144,16 +128,15 @@ class Messages:
         numbered: bool = True,
         latched: Set[bytes] = frozenset(),
     ) -> None:
-        """Nothing was read yet."""
         self._gathering = gathering
         self._source = source
         self._decoders = decoders
         self._numbered = numbered
         self._batches = Batches(gathering)
-        self._gaps_of_nodes = _Gaps(latched)
-        self._gaps_of_senders = _Gaps(latched)
+        self._latched = latched
+        self._losses_of_nodes: LossCounter[bytes] = LossCounter()
+        self._losses_of_senders: LossCounter[bytes] = LossCounter()
         self._lines: dict[Way, Lines] = {}
-        self._channels: dict[Way, Channel] = {}
         self._nodes: dict[bytes, int] = {}
         self._unstamped = _Unstamped()
 
@@ -170,7 +153,7 @@ class Messages:
             self._gathering.skip(topic, time_ns, str(error), "")
 
     def take_logs(self, chunk: Chunk, which: Bools, senders: Mapping[int, bytes]) -> bool:
-        """Read many of /rosout (ROS 1) at once; False, and none read, where one is odd.
+        """Read many messages of /rosout (ROS 1); False if one is malformed, and none is read.
 
         ``senders`` has who sent the messages of each connection, empty where that is not known.
         """
@@ -183,15 +166,14 @@ class Messages:
         places = zip(logs.node_begin.tolist(), logs.node_end.tolist(), strict=True)
         names = [chunk.data[begin:end] for begin, end in places]
         sent_by = [senders[number] for number in chunk.connection[which].tolist()]
-        self._gaps_of_nodes.see_all(names, logs.seq)
-        self._gaps_of_senders.see_all(
-            [sender or name for sender, name in zip(sent_by, names, strict=True)], logs.seq
-        )
+        self._losses_of_nodes.see_all(names, logs.seq, self._latched)
+        known = [sender or name for sender, name in zip(sent_by, names, strict=True)]
+        self._losses_of_senders.see_all(known, logs.seq, self._latched)
         bag_ns = chunk.time_ns[which]
         self._unstamped.see_all(names, bag_ns)
         codes = {name: self._node(name) for name in set(names)}
         nodes = np.array([codes[name] for name in names], np.int32)
-        # The first bytes of each text; what is too short for them is of no interest.
+        # The first bytes of each text. A text that is shorter is no report.
         long = logs.msg_end - logs.msg_begin >= len(_PREFIX)
         rows = np.flatnonzero(long)
         first = data[logs.msg_begin[rows, None] + np.arange(len(_PREFIX))]
@@ -220,11 +202,11 @@ class Messages:
             lines.flush()
             self._unstamped.count += lines.unstamped
         self._batches.close()
-        # Who sends numbers: rosbag play does so anew, in one row for all nodes. But rosbag filter
-        # names one sender for all. What is missing in both ways of counting is missing.
-        gaps = min(self._gaps_of_nodes, self._gaps_of_senders, key=lambda one: one.lost.total())
-        for name, count in gaps.lost.items():
-            self._gathering.lost[_plain(name)] += count
+        # The sender numbers messages: rosbag play numbers those of all nodes in one row. But rosbag
+        # filter names one sender for all. A message is lost only if both ways of counting miss it.
+        ways = (self._losses_of_nodes, self._losses_of_senders)
+        for name, count in min(ways, key=lambda one: one.lost.total()).lost.items():
+            self._gathering.lost[as_text(name)] += count
         if self._unstamped.count:
             self._gathering.late_notes.append(
                 f"{many(self._unstamped.count, 'record')} without a stamp got the bag's time"
@@ -233,8 +215,9 @@ class Messages:
     def _log(self, topic: str, caller: str, time_ns: int, raw: bytes) -> None:
         log = self._decoders.log(raw)
         if topic == ROSOUT and self._numbered:
-            self._gaps_of_nodes.see(log.node, log.seq)
-            self._gaps_of_senders.see(caller.encode() or log.node, log.seq)
+            sender = caller.encode() or log.node
+            self._losses_of_nodes.see(log.node, log.seq, latched=log.node in self._latched)
+            self._losses_of_senders.see(sender, log.seq, latched=sender in self._latched)
         self._text_of(log, topic, time_ns)
 
     def _text_of(self, log: LogMessage, topic: str, time_ns: int) -> None:
@@ -249,59 +232,41 @@ class Messages:
             lines = self._lines_of(way, topic, stamped=False, prefix=PREFIX)
             lines.add(log.msg[len(_PREFIX) :], stamp_ns, self._node(log.node))
         elif log.msg.startswith(_OTHERS) and topic == ROSOUT:
-            # What the rosout node passes on is the same once more.
-            node, text = _plain(log.node), _plain(log.msg)
-            line = _OtherLine(way, topic, log.stamp_ns or time_ns, node, text)
-            self._other(line, parse_other(text, node))
+            # The rosout node passes on the same lines.
+            lines = self._lines_of(way, topic, stamped=False, prefix=PREFIX)
+            lines.add_other(as_text(log.msg), as_text(log.node), log.stamp_ns or time_ns)
 
     def _text(self, caller: str, time_ns: int, text: bytes) -> None:
-        """A message on the topic: one line, or several of which the first is numbered."""
+        """Read a message on the topic: one line, or a numbered first line and several others."""
         if not text.startswith(b"#"):
             self._stamped("topic", caller, time_ns, text)
             return
         head, _, rest = text.partition(b"\n")
-        batch = parse_batch(_plain(head))
+        batch = parse_batch(as_text(head))
         lines = [line for line in rest.split(b"\n") if line]
         if isinstance(batch, Malformed):
             self._gathering.skip(
-                REPORTS, time_ns, f"{batch.what}, column {batch.column}", _plain(head)
+                REPORTS, time_ns, f"{batch.what}, column {batch.column}", as_text(head)
             )
         else:
             self._batches.see(caller, batch)
             said = sum(1 for line in lines if not _is_other(line))
             if said != batch.count:
-                what = f"{batch.count} reports are announced, {said} are there"
-                self._gathering.skip(REPORTS, time_ns, what, _plain(head))
+                what = f"the first line announces {batch.count} reports, {said} found"
+                self._gathering.skip(REPORTS, time_ns, what, as_text(head))
         for number, line in enumerate(lines, start=2):
             self._stamped("batch", caller, time_ns, line, number)
 
     def _stamped(self, way: Way, caller: str, time_ns: int, line: bytes, number: int = 0) -> None:
+        lines = self._lines_of(way, REPORTS, stamped=True)
         if _is_other(line):
-            text = _plain(line)
-            other = _OtherLine(way, REPORTS, time_ns, caller, text, number)
-            self._other(other, parse_stamped_other(text, caller))
+            lines.add_other(as_text(line), caller, time_ns, number)
         else:
-            lines = self._lines_of(way, REPORTS, stamped=True)
             lines.add(line, time_ns, self._node(caller.encode()), number)
-
-    def _other(self, line: _OtherLine, found: Summary | Drop | Malformed | None) -> None:
-        if isinstance(found, Summary):
-            self._gathering.add_summary(self._channel(line.way, line.topic), found)
-        elif isinstance(found, Drop) and line.topic == REPORTS:
-            self._batches.drop(line.node, found)
-        elif isinstance(found, Drop):
-            self._gathering.add_dropped(
-                Dropped(found.key, line.node, found.count, found.flops, found.why)
-            )
-        else:
-            what = "no time in front" if found is None else f"{found.what}, column {found.column}"
-            if line.number:
-                what = f"line {line.number}: {what}"
-            self._gathering.skip(line.topic, line.time_ns, what, line.text)
 
     def _mark(self, topic: str, time_ns: int, raw: bytes) -> None:
         if MarkMessages.message_type(topic) == "String":
-            self._gathering.mark_messages.add_text(topic, _plain(self._decoders.text(raw)))
+            self._gathering.mark_messages.add_text(topic, as_text(self._decoders.text(raw)))
         else:
             marked_ns = self._decoders.time(raw)
             self._unstamped.count += not marked_ns
@@ -310,19 +275,14 @@ class Messages:
     def _node(self, name: bytes) -> int:
         code = self._nodes.get(name)
         if code is None:
-            code = self._nodes[name] = self._gathering.nodes.code(_plain(name))
+            code = self._nodes[name] = self._gathering.nodes.code(as_text(name))
         return code
-
-    def _channel(self, way: Way, topic: str) -> Channel:
-        if way not in self._channels:
-            self._channels[way] = self._gathering.channel(self._source, way, topic)
-        return self._channels[way]
 
     def _lines_of(self, way: Way, topic: str, *, stamped: bool, prefix: str = "") -> Lines:
         lines = self._lines.get(way)
         if lines is None:
-            channel = self._channel(way, topic)
-            lines = Lines(self._gathering, channel, stamped=stamped, prefix=prefix)
+            channel = self._gathering.channel(self._source, way, topic)
+            lines = Lines(self._batches, channel, stamped=stamped, prefix=prefix)
             self._lines[way] = lines
         return lines
 
@@ -330,7 +290,3 @@ class Messages:
 def _is_other(line: bytes) -> bool:
     comma = line.find(b",")
     return line.startswith(_WITH_TIME, comma) or line.startswith(_OTHERS)
-
-
-def _plain(raw: bytes) -> str:
-    return raw.decode("utf-8", "replace")

@@ -1,4 +1,4 @@
-"""One entrance to all recordings: the format is told by the content of a file, not by its name."""
+"""Reads recordings of every format; the content of a file tells its format, not its name."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from pytpc.recording.mission import (
 Reader = Callable[[Path, Gathering, Progress | None], None]
 ROS2_FILE = "metadata.yaml"
 _FIRST = 4096
-# With whatever a spreadsheet made of the commas: the reader of marks says what is wrong then.
+# A spreadsheet may have changed the commas; the reader of marks then says what is wrong.
 _MARKS = re.compile(rb'(?:\xef\xbb\xbf)?"?time_ns"?\s*[,;\t]\s*"?type')
 # The rosout node and roscpp begin a new file after 100 MB.
 _ROTATED = re.compile(r"\.log\.[0-9]+")
@@ -53,7 +53,7 @@ def read(
         paths: bags (ROS 1, .mcap, .db3), binary files, logs, console text, CSV (reports or marks),
             folders of such files, and folders that ``pytpc convert`` wrote. Marks in a file
             ``NAME.marks.csv`` beside one of them are read with it.
-        on_progress: called with (done, total) every now and then, of one file after another.
+        on_progress: called with (done, total) now and then, for one file after another.
         tolerance_ns: how far apart in time the same report may be in two files.
 
     Raises:
@@ -68,18 +68,6 @@ def read(
     return Merged(gathering, name_of(given), tolerance_ns).recording()
 
 
-def read_bag(path: Path, on_progress: Progress | None = None) -> Recording:
-    """Read one ROS 1 bag; see ``read``.
-
-    Raises:
-        InputError: the file is no bag, is truncated, has no index or is damaged.
-    """
-    gathering = Gathering()
-    read_bag_into(path, gathering, on_progress)
-    gathering.marks += _beside(path)
-    return Merged(gathering, path.stem).recording()
-
-
 @contextmanager
 def opened(
     paths: Sequence[Path],
@@ -88,11 +76,11 @@ def opened(
     *,
     tolerance_ns: int = TOLERANCE_NS,
 ) -> Iterator[Merged]:
-    """The same with little memory: larger data goes to files in ``scratch``.
+    """Read recordings with little memory: data that does not fit goes to files in ``scratch``.
 
     Args:
         paths: as in ``read``.
-        scratch: a folder on a disk that has as much room as the reports need, 35 bytes each.
+        scratch: a folder on a disk with room for the reports, 36 bytes each.
         on_progress: as in ``read``.
         tolerance_ns: as in ``read``.
 
@@ -130,7 +118,7 @@ def gather(
             seen.add(path.resolve())
             gathering.marks += _beside(path)
         for source in found:
-            # The same file by two names is read once.
+            # A file with two names is read once.
             real = source.resolve()
             if real not in seen:
                 seen.add(real)
@@ -138,7 +126,8 @@ def gather(
                 gathering.marks += _beside(source)
     empty = gathering.without_reports
     if empty:
-        gathering.late_notes.append(f"no report in {many(len(empty), 'text file')}, as {empty[0]}")
+        what = many(len(empty), "text file")
+        gathering.late_notes.append(f"{what} without a report, for example {empty[0]}")
     for path in paths:
         for left in sorted(path.glob("*.bag.active")):
             gathering.late_notes.append(f"{left}: not read; recover it with: rosbag reindex")
@@ -157,7 +146,7 @@ def sources(path: Path) -> list[Path]:
     try:
         entries = sorted(entry for entry in path.iterdir() if not entry.name.startswith("."))
         if (path / RUN_FILE).is_file() and (path / REPORTS_FOLDER).is_dir():
-            # A mission of ``pytpc record``, whose nodes wrote files.
+            # A mission of ``pytpc record`` whose nodes wrote files.
             entries += sorted((path / REPORTS_FOLDER).iterdir())
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror or error}", path) from error
@@ -185,7 +174,7 @@ def reader_of(path: Path) -> Reader:
     """The reader for this, by its first bytes.
 
     Raises:
-        InputError: it cannot be read, or nothing reads it.
+        InputError: it cannot be read, or its format is unknown.
     """
     if path.is_dir():
         return read_folder_into if is_converted(path) else read_ros2_into
@@ -230,7 +219,7 @@ def _is_recording(path: Path) -> bool:
         path.name.endswith(".marks.csv")
         and path.with_name(path.name[: -len(".marks.csv")]).exists()
     ):
-        # Read with the recording beside which it is.
+        # It is read with the recording beside it.
         return False
     return bool(_ROTATED.search(path.name)) or path.suffix in {
         ".bag",

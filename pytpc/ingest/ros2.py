@@ -1,8 +1,8 @@
 """Decodes the messages that TPC reads from ROS 2's serialised form (CDR).
 
-A message begins with four bytes of which the second tells the order of bytes; numbers are aligned
-to their size from there on; a string is a uint32 length, which counts the NUL at its end, and bytes
-(OMG, Common Data Representation). The layouts are those of rcl_interfaces/Log, std_msgs/String,
+A message begins with four bytes; the second gives the byte order. Behind them numbers are aligned
+to their size, and a string is a uint32 length, which counts the NUL at its end, and bytes (OMG,
+Common Data Representation). The layouts are those of rcl_interfaces/Log, std_msgs/String,
 builtin_interfaces/Time and (ROS 1's, bridged) std_msgs/Time.
 """
 

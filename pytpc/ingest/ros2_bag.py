@@ -18,8 +18,7 @@ from rosbags.rosbag2.storage_sqlite3 import Sqlite3Reader
 from pytpc.base.errors import InputError
 from pytpc.ingest import ros2
 from pytpc.ingest.gathering import Gathering, Progress
-from pytpc.ingest.messages import REPORTS, ROSOUT, Decoders, Messages
-from pytpc.recording.marks import MarkMessages
+from pytpc.ingest.messages import REPORTS, ROSOUT, Decoders, Messages, wanted
 
 MCAP_MAGIC = b"\x89MCAP0\r\n"
 SQLITE_MAGIC = b"SQLite format 3\0"
@@ -44,8 +43,7 @@ def read_ros2_into(path: Path, gathering: Gathering, on_progress: Progress | Non
     with contextlib.ExitStack() as exits:
         try:
             reader = _open(path, exits)
-            connections = list(reader.connections)
-            wanted, notes = _wanted(connections)
+            kept, notes = wanted(reader.connections, _TYPES, _TIMES)
             gathering.notes += notes
             whole = reader if isinstance(reader, Reader) else reader.metadata
             if whole.message_count:
@@ -53,8 +51,8 @@ def read_ros2_into(path: Path, gathering: Gathering, on_progress: Progress | Non
         except Exception as error:
             raise _broken(path, error) from error
         taken = Messages(gathering, str(path), _DECODERS, numbered=False)
-        total = sum(connection.msgcount for connection in wanted)
-        for turn, (connection, time_ns, raw) in enumerate(_messages(reader, wanted, path)):
+        total = sum(connection.msgcount for connection in kept)
+        for turn, (connection, time_ns, raw) in enumerate(_messages(reader, kept, path)):
             # SQLite keeps any type in any column.
             if isinstance(raw, bytes) and isinstance(time_ns, int):
                 taken.take(connection.topic, "", time_ns, raw)
@@ -70,19 +68,16 @@ def _open(path: Path, exits: contextlib.ExitStack) -> _Reader:
     reader: _Reader
     if path.is_dir():
         reader = Reader(path)
+    elif _is_mcap(path):
+        reader = McapReader(path)
     else:
-        with path.open("rb") as stream:
-            first = stream.read(len(SQLITE_MAGIC))
-        if first.startswith(MCAP_MAGIC):
-            reader = McapReader(path)
-        else:
-            if _IN_A_URI & set(str(path)):
-                # The path becomes a part of a URI there.
-                folder = exits.enter_context(tempfile.TemporaryDirectory())
-                link = Path(folder) / "bag.db3"
-                link.symlink_to(path.absolute())
-                path = link
-            reader = Sqlite3Reader(path)
+        if _IN_A_URI & set(str(path)):
+            # The path becomes a part of a URI there.
+            folder = exits.enter_context(tempfile.TemporaryDirectory())
+            link = Path(folder) / "bag.db3"
+            link.symlink_to(path.absolute())
+            path = link
+        reader = Sqlite3Reader(path)
     reader.open()
     exits.callback(_close, reader)
     return reader
@@ -119,34 +114,15 @@ def _broken(path: Path, error: Exception) -> InputError:
     hint = f'; "mcap recover {path.name}" recovers the rest'
     if path.is_dir():
         hint = ""
-    elif _first(path) != MCAP_MAGIC:
+    elif not _is_mcap(path):
         hint = f'; "sqlite3 {path.name} .recover" recovers the rest'
     size = "" if path.is_dir() else f" ({path.stat().st_size:,} bytes)"
     return InputError(f"truncated or damaged{size}: {said}{hint}", path)
 
 
-def _wanted(connections: list[Connection]) -> tuple[list[Connection], list[str]]:
-    """The connections that carry reports or marks, and a note for each of another type."""
-    wanted = []
-    notes = set()
-    for connection in connections:
-        expected = _TYPES.get(connection.topic)
-        of_marks = MarkMessages.message_type(connection.topic)
-        if expected is None and of_marks is not None:
-            expected = _TIMES if of_marks == "Time" else _TYPES[REPORTS]
-        if expected is None:
-            continue
-        if connection.msgtype in expected:
-            wanted.append(connection)
-        else:
-            kinds = " or ".join(sorted(expected))
-            notes.add(f"{connection.topic} carries {connection.msgtype}, not {kinds}: not read")
-    return wanted, sorted(notes)
-
-
-def _first(path: Path) -> bytes:
+def _is_mcap(path: Path) -> bool:
     try:
         with path.open("rb") as stream:
-            return stream.read(len(MCAP_MAGIC))
+            return stream.read(len(MCAP_MAGIC)) == MCAP_MAGIC
     except OSError:
-        return b""
+        return False

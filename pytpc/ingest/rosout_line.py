@@ -2,11 +2,10 @@
 
 Format: docs/reference/formats.md#reports.
 
-``parse_report`` and ``parse_other`` read what is in the ``msg`` of a /rosout message,
-``parse_stamped``, ``parse_stamped_other`` and ``parse_batch`` a line of the ``data`` of a
-/threshold_information message. A number is what the sinks write: decimal or scientific notation of
-a finite double, ``nan``, ``inf`` or ``-inf`` (and ``-nan``, the text that the C library gives the
-NaN of 0.0/0.0).
+``parse_report`` reads the ``msg`` of a /rosout message, ``parse_stamped`` and ``parse_batch`` read
+a line of the ``data`` of a /threshold_information message, and ``parse_other`` reads either. A
+number is what the sinks write: decimal or scientific notation of a finite double, ``nan``, ``inf``
+or ``-inf`` (and ``-nan``, which is how the C library writes the NaN of 0.0/0.0).
 """
 
 from __future__ import annotations
@@ -24,45 +23,38 @@ SUMMARY_PREFIX = "threshold_summary:"
 DROPPED_PREFIX = "threshold_dropped:"
 LATEST_NS = 2**63 - 1
 
-_TIME = r"[0-9]{1,10}\.[0-9]{1,9}"
-_KEY = r"[0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12}"
+TIME = r"[0-9]{1,10}\.[0-9]{1,9}"
+KEY = r"[0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12}"
 _BOOL = r"0|1|True|False"
-_DOUBLE = r"[-+]?(?:[0-9]+(?:\.[0-9]*)?(?:[eE][-+]?[0-9]+)?|\.[0-9]+(?:[eE][-+]?[0-9]+)?|inf|nan)"
+DOUBLE = r"[-+]?(?:[0-9]+(?:\.[0-9]*)?(?:[eE][-+]?[0-9]+)?|\.[0-9]+(?:[eE][-+]?[0-9]+)?|inf|nan)"
 _END = r"[ \t\r\n]*"
 
-_REPORT = re.compile(rf"({_KEY}),({_BOOL}),cmp:({_DOUBLE}),thresh:({_DOUBLE}),res:({_BOOL}){_END}")
+_REPORT = re.compile(rf"({KEY}),({_BOOL}),cmp:({DOUBLE}),thresh:({DOUBLE}),res:({_BOOL}){_END}")
 _COUNT = r"[0-9]{1,18}"
 _SUMMARY = re.compile(
-    rf"({_KEY}),({_BOOL}),cmp:({_DOUBLE}),thresh:({_DOUBLE}),res:({_BOOL}),count:({_COUNT}),"
-    rf"flops:({_COUNT}),diff:({_DOUBLE});({_DOUBLE});({_DOUBLE}),abs:({_DOUBLE}),"
-    rf"range:({_DOUBLE});({_DOUBLE}),far:({_COUNT}),odd:({_COUNT}),span:({_TIME});({_TIME}){_END}"
+    rf"({KEY}),({_BOOL}),cmp:({DOUBLE}),thresh:({DOUBLE}),res:({_BOOL}),count:({_COUNT}),"
+    rf"flops:({_COUNT}),diff:({DOUBLE});({DOUBLE});({DOUBLE}),abs:({DOUBLE}),"
+    rf"range:({DOUBLE});({DOUBLE}),far:({_COUNT}),odd:({_COUNT}),span:({TIME});({TIME}){_END}"
 )
 _DROPPED = re.compile(
-    rf"({_KEY})?,count:({_COUNT}),flops:({_COUNT}),why:(site|process|nested|stopped){_END}"
+    rf"({KEY})?,count:({_COUNT}),flops:({_COUNT}),why:(site|process|nested|stopped){_END}"
 )
 _BATCH = re.compile(
-    rf"#seq:({_COUNT}),count:({_COUNT}),dropped:({_COUNT}),pid:({_COUNT}),steady:({_TIME}){_END}"
+    rf"#seq:({_COUNT}),count:({_COUNT}),dropped:({_COUNT}),pid:({_COUNT}),steady:({TIME}){_END}"
 )
-_STAMPED = re.compile(rf"({_TIME}),")
-_BOOLS = {"0": False, "1": True, "False": False, "True": True}
+_STAMPED = re.compile(rf"({TIME}),")
+BOOLS = {"0": False, "1": True, "False": False, "True": True}
 
 _SUMMARY_NUMBERS = {"cmp": 3, "thresh": 4, "diff_min": 8, "diff_max": 9, "diff_mean": 10}
 _SUMMARY_NUMBERS |= {"abs_mean": 11, "low": 12, "high": 13}
 
 _FIELDS = (
-    ("a key (a UUID)", re.compile(_KEY), ","),
+    ("a key (a UUID)", re.compile(KEY), ","),
     ("a result (0, 1, True or False)", re.compile(_BOOL), ",cmp:"),
-    ("cmp as a number", re.compile(_DOUBLE), ",thresh:"),
-    ("thresh as a number", re.compile(_DOUBLE), ",res:"),
+    ("cmp as a number", re.compile(DOUBLE), ",thresh:"),
+    ("thresh as a number", re.compile(DOUBLE), ",res:"),
     ("res (0, 1, True or False)", re.compile(_BOOL), ""),
 )
-
-
-class StampedReport(NamedTuple):
-    """A report with its own time, in nanoseconds."""
-
-    time_ns: int
-    report: Report
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +81,11 @@ class BatchHead:
     pid: int
 
 
+def as_text(raw: bytes) -> str:
+    """The text of a line; bytes that are not UTF-8 are replaced."""
+    return raw.decode("utf-8", "replace")
+
+
 class Malformed(NamedTuple):
     """A line that only begins like a report: what is wrong, and at which column (from 1)."""
 
@@ -108,8 +105,8 @@ def parse_report(text: str) -> Report | Malformed | None:
     return _read(text, len(PREFIX))
 
 
-def parse_stamped(text: str) -> StampedReport | Malformed:
-    """Read ``TIME,KEY,RESULT,cmp:C,thresh:T,res:R``, TIME in seconds.
+def parse_stamped(text: str) -> tuple[int, Report] | Malformed:
+    """Read ``TIME,KEY,RESULT,cmp:C,thresh:T,res:R``, TIME in seconds and returned in nanoseconds.
 
     Nothing else belongs on that topic, so any other text is ``Malformed``.
     """
@@ -119,41 +116,21 @@ def parse_stamped(text: str) -> StampedReport | Malformed:
     if nanoseconds(stamp[1]) > LATEST_NS:
         return Malformed("a time beyond the year 2262", 1)
     report = _read(text, stamp.end())
-    if isinstance(report, Malformed):
-        return report
-    return StampedReport(nanoseconds(stamp[1]), report)
+    return report if isinstance(report, Malformed) else (nanoseconds(stamp[1]), report)
 
 
-def parse_other(text: str, node: str) -> Summary | Drop | Malformed | None:
-    """Read ``threshold_summary:...`` or ``threshold_dropped:...``.
+def parse_other(
+    text: str, node: str, *, stamped: bool = False
+) -> Summary | Drop | Malformed | None:
+    """Read ``threshold_summary:...`` or ``threshold_dropped:...``, behind a time if ``stamped``.
 
     Returns:
         What it says; ``Malformed`` where the text only begins like one; None for anything else.
     """
-    return _other(text, 0, node)
-
-
-def parse_stamped_other(text: str, node: str) -> Summary | Drop | Malformed | None:
-    """The same after a time in seconds and a comma."""
-    stamp = _STAMPED.match(text)
-    return None if stamp is None else _other(text, stamp.end(), node)
-
-
-def parse_batch(text: str) -> BatchHead | Malformed:
-    """Read ``#seq:N,count:N,dropped:N,pid:P,steady:S``."""
-    found = _BATCH.fullmatch(text)
-    if found is None:
-        return Malformed("a line that begins with # is #seq:N,count:N,dropped:N,pid:P,steady:S", 1)
-    return BatchHead(*(int(number) for number in found.groups()[:4]))
-
-
-def nanoseconds(text: str) -> int:
-    """The time of a text that matches ``_TIME``."""
-    seconds, _, fraction = text.partition(".")
-    return int(seconds) * 10**9 + int(fraction.ljust(9, "0"))
-
-
-def _other(text: str, start: int, node: str) -> Summary | Drop | Malformed | None:
+    stamp = _STAMPED.match(text) if stamped else None
+    if stamped and stamp is None:
+        return None
+    start = 0 if stamp is None else stamp.end()
     if text.startswith(SUMMARY_PREFIX, start):
         place = start + len(SUMMARY_PREFIX)
         found = _SUMMARY.fullmatch(text, place)
@@ -168,6 +145,20 @@ def _other(text: str, start: int, node: str) -> Summary | Drop | Malformed | Non
         key, count, flops, why = found.groups()
         return Drop((key or "").lower(), int(count), int(flops), why)
     return None
+
+
+def parse_batch(text: str) -> BatchHead | Malformed:
+    """Read ``#seq:N,count:N,dropped:N,pid:P,steady:S``."""
+    found = _BATCH.fullmatch(text)
+    if found is None:
+        return Malformed("a line that begins with # is #seq:N,count:N,dropped:N,pid:P,steady:S", 1)
+    return BatchHead(*(int(number) for number in found.groups()[:4]))
+
+
+def nanoseconds(text: str) -> int:
+    """The time of a text that matches ``TIME``."""
+    seconds, _, fraction = text.partition(".")
+    return int(seconds) * 10**9 + int(fraction.ljust(9, "0"))
 
 
 def _summary(found: re.Match[str], node: str) -> Summary | Malformed:
@@ -189,8 +180,8 @@ def _summary(found: re.Match[str], node: str) -> Summary | Malformed:
         flops=flops,
         far=far,
         odd=odd,
-        result=_BOOLS[found[2]],
-        res=_BOOLS[found[5]],
+        result=BOOLS[found[2]],
+        res=BOOLS[found[5]],
         **numbers,
     )
 
@@ -205,7 +196,7 @@ def _read(text: str, start: int) -> Report | Malformed:
     for value, group in ((cmp, 3), (thresh, 4)):
         if math.isinf(value) and "inf" not in found[group]:
             return Malformed("a number is beyond the range of a double", found.start(group) + 1)
-    return Report(key.lower(), _BOOLS[result], cmp, thresh, _BOOLS[res])
+    return Report(key.lower(), BOOLS[result], cmp, thresh, BOOLS[res])
 
 
 def _fault(text: str, start: int) -> Malformed:

@@ -1,9 +1,9 @@
 """Sorts any number of rows by time: in memory, or in runs on disk that are merged on reading.
 
-External merge sort (Knuth, The Art of Computer Programming 3, section 5.4): what comes in is kept
-until there are ``run_rows`` rows, sorted (stably) and written to a file of its own; when all is in,
-the files are read side by side, a block of each at a time. What came in sorted anyway costs no
-merge: runs of which one begins where the other ends are read one after the other.
+External merge sort (Knuth, The Art of Computer Programming 3, section 5.4): rows are kept until
+there are ``run_rows`` of them, then sorted (stably) and written to a file as a run. In the end the
+runs are read side by side, a block of each at a time. Rows that came in sorted need no merge: a run
+that begins where another ends is read after it.
 """
 
 from __future__ import annotations
@@ -26,12 +26,11 @@ _SMALLEST_BLOCK = 1 << 10
 
 @dataclass(frozen=True, slots=True)
 class _Run:
-    """Sorted rows: an array, or ``count`` of them from row ``start`` of a file."""
+    """``count`` sorted rows from row ``start`` of the file."""
 
     first_ns: int
     last_ns: int
     count: int
-    rows: Rows | None
     start: int
 
 
@@ -52,7 +51,6 @@ class Spool:
         path: Path | None = None,
         run_rows: int = RUN_ROWS,
     ) -> None:
-        """See the class."""
         self.kind = np.dtype(kind)
         self._time = time
         self._path = path
@@ -109,7 +107,7 @@ class Spool:
         with path.open("ab") as stream:
             rows.tofile(stream)
         times = rows[self._time]
-        run = _Run(int(times[0]), int(times[-1]), rows.size, None, self._written)
+        run = _Run(int(times[0]), int(times[-1]), rows.size, self._written)
         self._runs.append(run)
         self._written += rows.size
         self._held, self._held_rows = [], 0
@@ -117,8 +115,7 @@ class Spool:
     def _chains(self) -> list[list[_Run]]:
         """Joins runs that follow one another in time.
 
-        A run goes behind the last one of the chain before it alone: equal times must keep the
-        order in which the runs came.
+        Only the last chain is extended: equal times must keep the order of their runs.
         """
         chains: list[list[_Run]] = []
         for run in self._runs:
@@ -139,7 +136,7 @@ class Spool:
 
 
 class _Stream:
-    """One sorted stream of blocks, of which the first is at hand."""
+    """A sorted stream of blocks; the first one is loaded."""
 
     def __init__(self, blocks: Iterator[Rows], time: str) -> None:
         self._blocks = blocks
@@ -165,8 +162,8 @@ class _Stream:
 def _merged(streams: list[_Stream]) -> Iterator[Rows]:
     """Blocks of all ``streams`` in order of time; equal times in the order of the streams.
 
-    At each turn all streams are known up to the smallest last time at hand. Of what has exactly
-    this time there may be more to come: it is given stream by stream.
+    Each turn goes up to the smallest last time that is loaded. More rows with exactly this time may
+    follow in each stream, so these rows are given stream by stream.
     """
     streams = [stream for stream in streams if stream.rows is not None]
     while len(streams) > 1:

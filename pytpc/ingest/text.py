@@ -1,8 +1,8 @@
 """Reports in text: logs of roscpp and of the rosout node, console output, CSV.
 
 A line of a log may have anything in front of the report: what ROSCONSOLE_FORMAT says, colours, the
-name of a node. Of it the time is taken (of ``[wall, simulated]`` the simulated one) and, where it
-is there, the node's name. A report without a time gets that of the line before it that has one.
+name of a node. The reader takes the time from it (the simulated one of ``[wall, simulated]``) and
+the node's name, if there is one. A report without a time gets the last time before it.
 """
 
 from __future__ import annotations
@@ -19,18 +19,14 @@ from pytpc.ingest.rosout_line import (
     LATEST_NS,
     PREFIX,
     BatchHead,
-    Drop,
-    Malformed,
+    as_text,
     nanoseconds,
     parse_batch,
-    parse_other,
-    parse_stamped_other,
 )
-from pytpc.recording.summaries import Summary
 
 _BLOCK = 1 << 20
 _LONGEST = 1 << 16
-# A spreadsheet may have exchanged the commas, or put quotes around all of it.
+# A spreadsheet may have replaced the commas, or quoted the whole line.
 _REPORT_LIKE = re.compile(rb"[01e][\s,;\"]+cmp:.*thresh:.*res:")
 _CSV_FORM = "TIME,KEY,RESULT,cmp:C,thresh:T,res:R with decimals in TIME"
 _PREFIX = PREFIX.encode()
@@ -45,9 +41,10 @@ _CSV = re.compile(rb"[0-9]{1,10}\.[0-9]{1,9},|#seq:")
 
 
 def read_text_into(path: Path, gathering: Gathering, on_progress: Progress | None = None) -> None:
-    """Read a log, console output, or CSV, told apart by the first two lines.
+    """Read a log, console output or CSV; the first two lines tell which.
 
-    In CSV every line but the first must be a report; in a log only what begins like one.
+    In CSV every line but the first must be a report. In a log only lines that begin like a report
+    are read.
 
     Raises:
         InputError: the file cannot be read.
@@ -82,30 +79,17 @@ class _Taker:
         self._malformed = gathering.malformed
         self.others = 0
         self.channel = gathering.channel(str(path), "text", path.name)
-        self.lines = Lines(gathering, self.channel, stamped=stamped)
-        self.node = path.stem
         self.batches = Batches(gathering)
+        self.lines = Lines(self.batches, self.channel, stamped=stamped)
+        self.node = path.stem
 
     def take(self, number: int, line: bytes) -> None:
         raise NotImplementedError
 
     def take_many(self, number: int, lines: list[bytes]) -> None:
-        """Lines that follow one another; the first has the number ``number``."""
+        """Take consecutive lines; ``number`` is the number of the first."""
         for at, line in enumerate(lines, start=number):
             self.take(at, line)
-
-    def other(
-        self, found: Summary | Drop | Malformed | None, node: str, number: int, text: str
-    ) -> None:
-        """A line that is no report."""
-        self.others += 1
-        if isinstance(found, Summary):
-            self.gathering.add_summary(self.channel, found)
-        elif isinstance(found, Drop):
-            self.batches.drop(node, found)
-        else:
-            what = "no time in front" if found is None else f"{found.what}, column {found.column}"
-            self.gathering.skip(self.channel.topic, 0, f"line {number}: {what}", text)
 
     def close(self) -> None:
         self.lines.flush()
@@ -136,7 +120,7 @@ class _Log(_Taker):
         if found is None:
             if _REPORT_LIKE.search(line):
                 what = f"line {number}: neither a line of a log nor {_CSV_FORM}"
-                self.gathering.skip(self.channel.topic, 0, what, _plain(line))
+                self.gathering.skip(self.channel.topic, 0, what, as_text(line))
             return
         self._without_time += stamp is None
         named = _NODE.search(front)
@@ -146,7 +130,8 @@ class _Log(_Taker):
             code = self.gathering.nodes.code(node)
             self.lines.add(rest[len(_PREFIX) :], self._last_ns, code, number)
         else:
-            self.other(parse_other(_plain(rest), node), node, number, _plain(rest))
+            self.others += 1
+            self.lines.add_other(as_text(rest), node, number=number)
 
     def close(self) -> None:
         super().close()
@@ -168,14 +153,15 @@ class _Csv(_Taker):
         if not line.strip() or (number == 1 and not _CSV.match(line) and b"cmp:" not in line):
             return
         if line.startswith(b"#"):
-            batch = parse_batch(_plain(line))
+            batch = parse_batch(as_text(line))
             if isinstance(batch, BatchHead):
                 self.batches.see(self.node, batch)
             else:
-                self.other(batch, self.node, number, _plain(line))
+                what = f"line {number}: {batch.what}, column {batch.column}"
+                self.gathering.skip(self.channel.topic, 0, what, as_text(line))
         elif _BEGIN.search(line):
-            text = _plain(line)
-            self.other(parse_stamped_other(text, self.node), self.node, number, text)
+            self.others += 1
+            self.lines.add_other(as_text(line), self.node, number=number)
         else:
             self.lines.add(line, 0, self._code, number)
 
@@ -189,8 +175,9 @@ class _Csv(_Taker):
 
 
 def _lines(path: Path) -> Iterator[tuple[int, list[bytes], int]]:
-    """Number (from 1) of the first of some lines, the lines without their ends, and how many bytes
-    were read so far; of an endless line the begin."""
+    """The file in parts: the number (from 1) of the first line, the lines without line ends, and
+    the bytes read so far. Only the beginning of an endless line is kept.
+    """
     rest, number, done, cut = b"", 1, 0, False
     with path.open("rb") as stream:
         while block := stream.read(_BLOCK):
@@ -198,7 +185,7 @@ def _lines(path: Path) -> Iterator[tuple[int, list[bytes], int]]:
             lines = (rest + block).split(b"\n")
             rest = lines.pop()
             if cut and lines:
-                # The end of what was too long.
+                # The end of a line that was too long.
                 del lines[0]
                 cut = False
             if len(rest) > _LONGEST:
@@ -210,7 +197,3 @@ def _lines(path: Path) -> Iterator[tuple[int, list[bytes], int]]:
                 number += len(lines)
     if rest and not cut:
         yield number, [rest.rstrip(b"\r")], done
-
-
-def _plain(raw: bytes) -> str:
-    return raw.decode("utf-8", "replace")

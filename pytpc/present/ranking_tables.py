@@ -21,7 +21,7 @@ from pytpc.diagnosis.results.advice import (
 from pytpc.diagnosis.results.suspects import Blame, MarkRanking
 from pytpc.recording.marks import MarkType
 from pytpc.recording.mission import Recording
-from pytpc.static.static_info import Comparison
+from pytpc.static.link_unit import Comparison
 
 _TYPE_WORDS = {
     "I": "type I, did what it should not",

@@ -1,17 +1,23 @@
-"""One link unit of Python, analysed: the passes in their order, and their result as a LinkUnit."""
+"""The analysis of one link unit of Python: the passes in order, and their result as a LinkUnit."""
 
 from __future__ import annotations
 
 import gc
+import uuid
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from importlib.metadata import PackageNotFoundError, version
 
 from pytpc.base.errors import InputError
 from pytpc.python_analysis.budget import SECONDS, Budget, BudgetSpentError, what_failed
-from pytpc.python_analysis.comparisons.constant_finder import find_constants
-from pytpc.python_analysis.comparisons.follow import Fact, Follower
-from pytpc.python_analysis.comparisons.gather import Found, Gatherer, end_position, key_of, position
+from pytpc.python_analysis.comparisons.follow import FLAG, Follower
+from pytpc.python_analysis.comparisons.gather import (
+    Found,
+    Gatherer,
+    find_constants,
+    position,
+    span_of,
+)
 from pytpc.python_analysis.comparisons.path import path_of
 from pytpc.python_analysis.comparisons.reads import Exposed, Read, find_exposing, find_reads
 from pytpc.python_analysis.comparisons.slicing import Slice, Slicer
@@ -20,11 +26,10 @@ from pytpc.python_analysis.flow.raising import add_raising_calls
 from pytpc.python_analysis.flow.value_flow import Flow
 from pytpc.python_analysis.ir.instructions import Instr
 from pytpc.python_analysis.ir.names import named_variable
-from pytpc.python_analysis.ir.program import Loader, Program
+from pytpc.python_analysis.ir.program import Program
 from pytpc.python_analysis.points_to.points_to import PointsTo
 from pytpc.python_analysis.rules_file import Rules
-from pytpc.python_analysis.sources.packages import Entry
-from pytpc.python_analysis.sources.source_files import lines_of
+from pytpc.python_analysis.sources.scripts import Entry
 from pytpc.static.link_unit import (
     BlindSpot,
     Comparison,
@@ -37,12 +42,14 @@ from pytpc.static.link_unit import (
     Tool,
 )
 
+# The passes make the keys of comparisons in the same namespace.
+_NAMESPACE = uuid.UUID("6b0f7a52-2c9e-4d61-9a37-8f15c3405ed8")
 _AT_MOST = 200
 
 
 @dataclass
 class Analysed:
-    """All that was worked out of a link unit."""
+    """The results of all passes on a link unit."""
 
     program: Program
     rules: Rules
@@ -58,7 +65,7 @@ class Analysed:
 def analyse(program: Program, rules: Rules) -> Analysed:
     """Run all passes on a program."""
     points = PointsTo(program, rules)
-    raising = add_raising_calls(points)
+    leaving = add_raising_calls(points)
     flow = Flow(points)
     constants = Constants(flow)
     reads = find_reads(flow, constants, rules)
@@ -66,8 +73,8 @@ def analyse(program: Program, rules: Rules) -> Analysed:
     follower = Follower(flow, constants, rules)
     follower.run(reads)
     follower.decide()
-    fixed = find_constants(follower, constants) if rules.constants else []
-    found_slice = Slicer(flow, raising, follower.outcomes.selecting).run(exposed)
+    fixed = find_constants(follower) if rules.constants else []
+    found_slice = Slicer(flow, leaving, follower.outcomes.selecting).run(exposed)
     gatherer = Gatherer(follower, found_slice)
     found, others = gatherer.run()
     found += gatherer.constants(fixed, [*found, *others])
@@ -82,31 +89,31 @@ def analyse_entry(
 ) -> LinkUnit:
     """The static information of a script.
 
-    Its status is ``failed`` where the analysis takes longer than ``seconds`` (0: no limit), or ends
-    in an error of its own; no other exception than the following comes out.
+    Its status is ``failed`` if the analysis takes longer than ``seconds`` (0: no limit) or ends in
+    an internal error; it raises no other exception than the one below.
 
     Args:
         entry: which script.
         rules: what reads and what exposes.
-        seconds: time on the wall.
-        on_fault: is told of imported modules that cannot be read or parsed: they are taken for
-            modules of a library, which nothing is known of, and listed as blind spots.
+        seconds: wall-clock time.
+        on_fault: called with imported modules that cannot be read or parsed. The analysis treats
+            them like modules of a library, and lists them as blind spots.
 
     Raises:
         InputError: the script itself cannot be read or parsed.
     """
-    program = Program(entry.name, entry.package, entry.root)
+    program = Program(entry)
     collecting = gc.isenabled()
-    # Everything lives to the end, in millions of cycles: to look for garbage doubles the time.
+    # Everything lives to the end, in millions of cycles; searching for garbage doubles the time.
     gc.disable()
     try:
         with Budget(seconds):
-            Loader(program, entry).load()
+            program.load()
             unit = Writer(analyse(program, rules)).unit()
     except InputError:
         raise
     except BudgetSpentError:
-        why = f"the analysis took more than {seconds:g} s (more: --max-seconds)"
+        why = f"the analysis took more than {seconds:g} s (--max-seconds raises the limit)"
         return _failed(program, rules, why)
     except Exception as error:
         return _failed(program, rules, what_failed(error))
@@ -129,12 +136,13 @@ def _failed(program: Program, rules: Rules, why: str) -> LinkUnit:
 
 
 class Writer:
-    """Writes what was found in the terms of docs/reference/formats.md."""
+    """Writes the results as docs/reference/formats.md describes them."""
 
     def __init__(self, analysed: Analysed) -> None:
-        """Sources are at hand for the texts of lines."""
         self.all = analysed
-        self._lines = {module.path: lines_of(module.source) for module in analysed.program.modules}
+        # Not `splitlines`: in Python a form feed does not end a line.
+        modules = analysed.program.modules
+        self._lines = {module.path: module.source.split("\n") for module in modules}
 
     def unit(self) -> LinkUnit:
         """The link unit, its lists in the order of the format."""
@@ -237,7 +245,7 @@ class Writer:
         return comparisons
 
     def _condition(self, found: Found) -> object:
-        """What stands for the condition that a comparison is part of."""
+        """Identifies the condition that a comparison is part of."""
         assert found.predicate is not None
         function = found.at.function
         return function.module.path, function.conditions.get(found.at.node, found.at.node)
@@ -256,10 +264,10 @@ class Writer:
         )  # fmt: skip
         ordinal = keys.get(parts, 0)
         keys[parts] = ordinal + 1
-        key = key_of([*parts, str(ordinal)] if ordinal else list(parts))
+        key = uuid.uuid5(_NAMESPACE, "\n".join([*parts, str(ordinal)] if ordinal else parts))
         assert found.predicate is not None
         exposed = self.all.slice.nearest[found.predicate]
-        reads = [self._read_place(fact) for fact in found.facts]
+        reads = [self._place(fact.read.instr) for fact in found.facts]
         return Comparison(
             key=str(key),
             type=found.type,
@@ -286,9 +294,6 @@ class Writer:
             operand=found.operand_text,
         )
 
-    def _read_place(self, fact: Fact) -> Place:
-        return self._place(fact.read.instr)
-
     def _not_exposed(self) -> list[NotExposed]:
         found = []
         for each in sorted(self.all.others, key=_order):
@@ -304,18 +309,18 @@ class Writer:
 
     def _blind_spots(self) -> list[BlindSpot]:
         spots = []
-        for lost in self.all.follower.lost.values():
-            what = "the value is not followed from here on"
-            spots.append(self._spot("lost_value", lost.fact.name or None, lost.at, what))
+        for at, fact in self.all.follower.lost.items():
+            what = "the value is not followed beyond this point"
+            spots.append(self._spot("lost_value", fact.name or None, at, what))
         for read in self.all.reads:
             if DYNAMIC in read.name:
-                what = "the parameter's name is put together at run time"
+                what = "the parameter's name is computed at run time"
                 spots.append(self._spot("dynamic_name", read.name, read.instr, what))
         for call in self._unknown_calls():
-            what = "what is called here is not known"
+            what = "the function that is called here is unknown"
             spots.append(self._spot("indirect_call", None, call, what))
         for fault in self.all.program.faults:
-            what = f"this module is imported, and is left out: {fault.error.message}"
+            what = f"this imported module is left out: {fault.error.message}"
             line = fault.error.line or 1
             spots.append(
                 BlindSpot("unread_module", None, fault.path, line, 1, "<module>", what, None)
@@ -339,7 +344,7 @@ def _order(found: Found) -> tuple[object, ...]:
 
 
 def _where(instr: Instr) -> tuple[object, ...]:
-    return instr.function.module.path, position(instr), end_position(instr)
+    return instr.function.module.path, span_of(instr, FLAG)
 
 
 def _version() -> str:

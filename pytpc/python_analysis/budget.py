@@ -1,4 +1,4 @@
-"""What an analysis may take of the machine, and what becomes of one that ends in an error."""
+"""The time that an analysis may take, and the description of an internal error."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import threading
 import time
 import traceback
 from pathlib import Path
-from types import TracebackType
 
 from pytpc.python_analysis.ir.instructions import Instr
 
@@ -18,18 +17,18 @@ SECONDS = 120.0
 
 
 class BudgetSpentError(BaseException):
-    """The time is over. No ``Exception``: nothing in an analysis is to take it for one of its."""
+    """The time is over. It is not an ``Exception``, so that no analysis catches it."""
 
 
 class Budget:
-    """Ends what its ``with`` holds by a `BudgetSpentError` once the time is over.
+    """Ends its ``with`` block by a `BudgetSpentError` once the time is over.
 
-    A timer raises it in the thread that is at work, so that every loop of every analysis has its
-    end without asking for the time.
+    A timer raises it in the working thread, so that every loop of every analysis ends without
+    checking the time.
     """
 
     def __init__(self, seconds: float) -> None:
-        """``seconds`` of time on the wall; 0 is no limit."""
+        """``seconds`` of wall-clock time; 0 is no limit."""
         self._seconds = seconds
         self._lock = threading.Lock()
         self._is_working = False
@@ -38,7 +37,6 @@ class Budget:
         self._timer: threading.Timer | None = None
 
     def __enter__(self) -> Budget:
-        """Begin to count."""
         self._thread = threading.get_ident()
         self._is_working = True
         if self._seconds > 0:
@@ -47,16 +45,11 @@ class Budget:
             self._timer.start()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        """Count no more. What was raised and has not arrived yet is awaited here, and dropped.
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        """Stop counting. Wait for an error that was raised and has not arrived yet, and drop it.
 
-        To take it back by ``PyThreadState_SetAsyncExc(thread, NULL)`` leaves CPython 3.11 asking
-        for ever whether there is something, and then a traced program stands still.
+        Cancelling it by ``PyThreadState_SetAsyncExc(thread, NULL)`` makes CPython 3.11 check for
+        errors forever, and then a traced program stands still.
         """
         try:
             with self._lock:
@@ -79,7 +72,7 @@ class Budget:
 
 
 def what_failed(error: BaseException) -> str:
-    """One line about an internal error: what it is, where it arose, and at what of the source."""
+    """An internal error in one line: what it is, where it was raised, and for which source line."""
     if isinstance(error, RecursionError):
         what = "expressions or statements are nested too deeply"
     elif isinstance(error, MemoryError):
@@ -95,9 +88,9 @@ def what_failed(error: BaseException) -> str:
 
 
 def place_of(error: BaseException) -> str | None:
-    """``file:line`` of the user's source that was looked at when an error arose, where known.
+    """``file:line`` of the user's source that was analysed when an error was raised, if known.
 
-    It is what the innermost frame that has an instruction among its variables had there.
+    It is the place of an instruction among the variables of the innermost frame that has one.
     """
     tracebacks = []
     trace = error.__traceback__

@@ -1,4 +1,4 @@
-"""The tables that drive the analysis of Python: ``rules/python.json``, and the user's own file."""
+"""The tables that drive the analysis of Python: ``rules/python.json`` and the user's own file."""
 
 from __future__ import annotations
 
@@ -10,22 +10,11 @@ from typing import Any
 from pytpc.base.checked_json import PYTHON_RULES_SCHEMA, check_schema, parse_json
 
 _OWN = Path(__file__).parent / "rules" / "python.json"
-_LISTS = (
-    "reads",
-    "lists",
-    "exposing",
-    "topics",
-    "makes",
-    "configs",
-    "services",
-    "values",
-    "comparisons",
-)
 
 
 @dataclass(frozen=True)
 class Argument:
-    """Where an argument stands: its place (None: keyword alone) and its keyword."""
+    """The place of an argument (None: only by keyword) and its keyword."""
 
     place: int | None
     keyword: str | None = None
@@ -33,11 +22,11 @@ class Argument:
 
 @dataclass(frozen=True)
 class LibraryComparison:
-    """What a library function compares inside.
+    """The comparison inside a library function.
 
-    ``relation``: its first two arguments, and its result is the outcome; ``within`` is the keyword
-    of a bound of their distance. ``chooses``: its result is one of its arguments, ``smallest`` or
-    ``largest``, or the first one within the two others (``clip``).
+    ``relation``: it compares its first two arguments and returns the outcome; ``within`` is the
+    keyword of a bound on their distance. ``chooses``: it returns one of its arguments, the
+    ``smallest`` or the ``largest``, or clamps the first one to the two others (``clip``).
     """
 
     relation: str | None = None
@@ -49,10 +38,10 @@ class LibraryComparison:
 class Rules:
     """The tables by dotted name; see ``rules/python.json``.
 
-    ``reads``: the arguments with the name and with the default. ``arithmetic``: the name of an
-    operation. ``lists``: the arguments with the names of the list of parameters that is returned,
-    and with the callback that is handed one. ``values``: attributes and methods that give the value
-    of a parameter object, and what they multiply it by.
+    ``reads``: the arguments for the name and the default. ``arithmetic``: the name of an operation.
+    ``lists``: the argument with the names of the returned parameters, and the one with the callback
+    that gets a list of parameters. ``values``: attributes and methods that give the value of a
+    parameter object, and their factor.
     """
 
     profile: str
@@ -72,20 +61,20 @@ class Rules:
     filters: set[str] = field(default_factory=set)
 
     def waits(self, method: str) -> bool:
-        """True where a function or method of that name waits for something."""
+        """True where a function or method of that name waits."""
         return any(
             method == word or f"{word}_" in method or f"_{word}" in method for word in self.waiting
         )
 
     @property
     def paths(self) -> list[str]:
-        """All dotted names that the tables are about."""
+        """All dotted names in the tables."""
         tables = (self.reads, self.topics, self.makes, self.configs, self.services, self.lists)
         named = [name for table in tables for name in table]
         return [*named, *self.exposing, *self.makes.values()]
 
     def class_of(self, path: str) -> str:
-        """The class of what calling ``path`` gives, by the one name that the rules use."""
+        """The class of what a call of ``path`` returns, by the one name that the rules use."""
         return self.makes.get(path, path)
 
 
@@ -94,30 +83,29 @@ def load_rules(profile: str = "default", own: Path | None = None) -> Rules:
     """The built-in tables for ``profile``, and the rows of the user's file.
 
     Raises:
-        InputError: the user's file cannot be read, is no JSON, or breaks the schema
-            ``python_rules.schema.json``, with the place.
+        InputError: the user's file cannot be read, is not JSON, or breaks the schema
+            ``python_rules.schema.json``; with the place.
     """
     rules = Rules(profile)
     for path in (_OWN, own):
         if path is not None:
-            _add(rules, _read(path))
+            data: Any = parse_json(path)
+            check_schema(data, path, PYTHON_RULES_SCHEMA)
+            for name, table in data.items():
+                _add(rules, name, table)
     return rules
 
 
-def _read(path: Path) -> dict[str, Any]:
-    data: Any = parse_json(path)
-    check_schema(data, path, PYTHON_RULES_SCHEMA)
-    return dict(data)
-
-
-def _add(rules: Rules, data: dict[str, Any]) -> None:
-    rules.arithmetic.update(data.get("arithmetic", {}))
-    for name in ("waiting", "outcomes", "filters"):
-        getattr(rules, name).update(data.get(name, []))
-    for name in _LISTS:
-        for row in data.get(name, []):
-            if rules.profile in row.get("profiles", [rules.profile]):
-                _add_row(rules, name, row)
+def _add(rules: Rules, name: str, table: Any) -> None:  # noqa: ANN401
+    match name:
+        case "$schema" | "schema" | "comment":
+            pass
+        case "arithmetic" | "waiting" | "outcomes" | "filters":
+            getattr(rules, name).update(table)
+        case _:
+            for row in table:
+                if rules.profile in row.get("profiles", [rules.profile]):
+                    _add_row(rules, name, row)
 
 
 def _add_row(rules: Rules, name: str, row: dict[str, Any]) -> None:

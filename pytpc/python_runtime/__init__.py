@@ -1,11 +1,10 @@
-"""Reports of a Python node: its modules are rewritten while they are imported.
+"""Reports of a Python node: the hook rewrites its modules while they are imported.
 
-This room runs inside the robot's node, under the node's interpreter: Python 3.8 and up, the
-standard library alone. rospy is used where the program has imported it.
+This room runs inside the robot's node, under the node's interpreter: Python 3.8 or newer, with the
+standard library alone. It uses rospy where the program has imported it.
 
 ``listed`` (which comparisons) -> ``find`` (where they are in a module) -> ``rewrite`` (a module
-that reports) -> ``loader``, ``script`` (how it comes to run); ``quiet`` (unseen by tracers) ->
-``sites`` (what an evaluation calls) -> ``runtime`` (what is chosen) -> ``policies``, ``log_file``,
-``ros_sinks`` (where reports go).
-docs/reference/python-runtime.md has it in words.
+that reports) -> ``loader``, ``run`` (how it is run); ``sites`` (what an evaluation calls, hidden
+from tracers by ``quiet``) -> ``runtime`` (which settings apply) -> ``policies``, ``log_file``,
+``ros_sinks`` (where reports go). docs/reference/python-runtime.md describes it.
 """

@@ -1,6 +1,6 @@
-"""What a process reports, and where to: docs/reference/runtime.md#settings.
+"""What a process reports, and where to (docs/reference/runtime.md#settings).
 
-The settings are those of the C++ runtime. An invalid value logs a warning and the previous setting
+The settings are those of the C++ runtime. An invalid value logs a warning, and the previous setting
 stays; it never stops a node.
 """
 
@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from pytpc.python_runtime.words import warn
+from pytpc.python_runtime.errors import warn
 
 SINKS = ("rosout", "topic", "file", "off")
 POLICIES = ("every", "edges")
@@ -24,15 +24,13 @@ NAMES = (
     "file_reserve",
 )
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     Value = Any
 
 _LARGEST = 1 << 40
 
 
 class Config(NamedTuple):
-    """All settings. Caps are reports a second, limits MiB; 0 is none."""
+    """All settings. Caps are in reports a second, limits in MiB; 0 means no cap and no limit."""
 
     sink: str = "rosout"
     policy: str = "every"
@@ -45,41 +43,38 @@ class Config(NamedTuple):
 
 
 def parsed(name: str, text: str) -> tuple[dict[str, Value] | None, str]:
-    """The fields of a `Config` that ``name`` set to ``text`` changes; or None and the reason."""
+    """The fields of a `Config` that setting ``name`` to ``text`` changes; else None and why."""
     choices = {"sink": SINKS, "policy": POLICIES}.get(name)
     if choices is not None:
-        return ({name: text}, "") if text in choices else (None, f"is none of {', '.join(choices)}")
+        why = f"it must be one of {', '.join(choices)}"
+        return ({name: text}, "") if text in choices else (None, why)
     if name == "period":
-        seconds = _number(text)
-        if seconds is None or not 1e-3 <= seconds <= 3600:
-            return None, "is no number of seconds from 0.001 to 3600"
+        try:
+            seconds = float(text)
+        except ValueError:
+            seconds = 0.0
+        if not 1e-3 <= seconds <= 3600:
+            return None, "it must be a number of seconds from 0.001 to 3600"
         return {"period_ns": int(seconds * 1e9)}, ""
     if name == "folder":
         return {name: text}, ""
     if name in NAMES:
         is_count = text.isascii() and text.isdigit() and int(text) <= _LARGEST
-        return ({name: int(text)}, "") if is_count else (None, "is no whole number")
-    return None, "is no setting"
+        return ({name: int(text)}, "") if is_count else (None, "it must be a whole number")
+    return None, "there is no such setting"
 
 
-def _number(text: str) -> float | None:
-    try:
-        return float(text)
-    except ValueError:
-        return None
-
-
-def of_environment(environment: Mapping[str, str] = os.environ) -> Config:
-    """The defaults and ``TPC_SINK`` and its kind."""
+def of_environment() -> Config:
+    """The defaults, changed by ``TPC_SINK`` and the other variables."""
     config = Config()
     for name in NAMES:
         variable = f"TPC_{name.upper()}"
-        text = environment.get(variable, "")
+        text = os.environ.get(variable, "")
         if not text:
             continue
         change, why = parsed(name, text)
         if change is None:
-            warn(f"{variable}={text} {why}; it is left as it was")
+            warn(f"{variable}={text} is ignored: {why}")
         else:
             config = config._replace(**change)
     return config

@@ -1,50 +1,51 @@
-"""The settings of a running node: parameters of ROS, and the service that takes them over."""
+"""The settings of a running node: ROS parameters, and the service that reads them again."""
 
 from __future__ import annotations
 
+import struct
 from typing import TYPE_CHECKING, Any
 
 from pytpc.python_runtime.config import NAMES, Config, parsed
-from pytpc.python_runtime.trigger import trigger
-from pytpc.python_runtime.words import warn
+from pytpc.python_runtime.errors import warn
 
 if TYPE_CHECKING:
+    from io import BytesIO
+
     from pytpc.python_runtime.runtime import Runtime
 
 _PLACES = ("/tpc", "~tpc")
+_TYPE = "std_srvs/Trigger"
+_MD5 = "937c9679a518e3a18d831e57125ea522"
 _SERVICE = "~tpc/reload"
 
 
 class Control:
-    """Takes over ``/tpc/NAME`` and ``~tpc/NAME``, the node's own last."""
+    """Applies ``/tpc/NAME`` and then ``~tpc/NAME``, so that the node's own parameter wins."""
 
     def __init__(self, runtime: Runtime, ros: Any) -> None:  # noqa: ANN401
-        """``ros`` is rospy, with a node that is up."""
+        """``ros`` is rospy, whose node is up."""
         self._runtime = runtime
         self._ros = ros
         self._of_environment = runtime.config
 
     def begin(self) -> None:
-        """Take the parameters over once, and serve ``~tpc/reload``.
+        """Apply the parameters once, and serve ``~tpc/reload``.
 
         Raises:
-            Exception: as rospy has it, where the master does not answer.
+            Exception: rospy's own, where the master does not answer.
         """
-        for complaint in self.take_over():
-            warn(complaint)
-        service, answer = trigger()
+        self.take_over()
+        service, answer = _trigger()
 
         def reload(_request: object) -> object:
             complaints = self.take_over()
-            for complaint in complaints:
-                warn(complaint)
             message = "".join(f"{complaint}; " for complaint in complaints)
             return answer(not complaints, message + self._runtime.status())
 
         self._ros.Service(_SERVICE, service, reload)
 
     def take_over(self) -> list[str]:
-        """Let the parameters hold; what is wrong with them."""
+        """Apply the parameters, and warn of invalid ones; return the warnings."""
         complaints: list[str] = []
         now = self._runtime.config
         new = self._of_environment
@@ -54,19 +55,23 @@ class Control:
             if found is None:
                 continue
             if not isinstance(found, dict):
-                complaints.append(f"the parameter {folder} is no folder of parameters; left out")
+                complaints.append(
+                    f"the parameter {folder} is not a namespace of parameters and is ignored"
+                )
                 continue
             for name, value in sorted(found.items()):
                 new, complaint = _changed(new, now, name, value)
                 if complaint:
-                    complaints.append(f"the parameter {folder}/{name} is left out: {complaint}")
+                    complaints.append(f"the parameter {folder}/{name} is ignored: {complaint}")
         if not self._runtime.apply(new):
-            complaints.append("what is set cannot be had; left as it was")
+            complaints.append("the settings cannot be applied; the previous ones stay")
+        for complaint in complaints:
+            warn(complaint)
         return complaints
 
 
 def _changed(new: Config, now: Config, name: str, value: object) -> tuple[Config, str]:
-    """``new`` with one setting more; what holds now, and why, where the parameter is wrong."""
+    """``new`` with one more setting; with ``now``'s, and the reason, where the value is invalid."""
     if name not in NAMES:
         return new, "there is no such setting"
     text = _text(name, value)
@@ -79,9 +84,67 @@ def _changed(new: Config, now: Config, name: str, value: object) -> tuple[Config
 
 
 def _text(name: str, value: object) -> str | None:
-    """A value of the parameter server as a word of the environment. YAML takes `off` for false."""
+    """A value of the parameter server as text. YAML reads `off` as false."""
     if isinstance(value, bool):
         return "off" if name == "sink" and not value else None
     if isinstance(value, (str, int)):
         return str(value)
     return repr(value) if isinstance(value, float) else None
+
+
+def _trigger() -> tuple[Any, Any]:
+    """The class of the service and that of its answer, as rospy expects them.
+
+    They are defined here because std_srvs is not installed on every machine. The request of
+    std_srvs/Trigger is empty; its answer is a byte for success and a text after its length.
+
+    Raises:
+        ImportError: genpy is not installed, and so rospy is not either.
+    """
+    import genpy  # noqa: PLC0415
+
+    class Request(genpy.Message):  # type: ignore[misc]
+        """No fields."""
+
+        _md5sum, _type, _has_header, _full_text = _MD5, f"{_TYPE}Request", False, ""
+        __slots__ = ()
+        _slot_types = ()
+
+        def serialize(self, buff: BytesIO) -> None:
+            """Write nothing."""
+
+        def deserialize(self, _text: bytes) -> object:
+            """Read nothing."""
+            return self
+
+    class Response(genpy.Message):  # type: ignore[misc]
+        """Whether it succeeded, and a message."""
+
+        _md5sum, _type, _has_header = _MD5, f"{_TYPE}Response", False
+        _full_text = "bool success\nstring message\n"
+        __slots__ = ("message", "success")
+        _slot_types = ("string", "bool")
+
+        def __init__(self, success: bool = False, message: str = "") -> None:
+            self.success = success
+            self.message = message
+
+        def serialize(self, buff: BytesIO) -> None:
+            """Write both."""
+            raw = self.message.encode("utf-8")
+            buff.write(struct.pack("<BI", self.success, len(raw)) + raw)
+
+        def deserialize(self, text: bytes) -> object:
+            """Read both."""
+            success, length = struct.unpack_from("<BI", text)
+            self.success = bool(success)
+            self.message = text[5 : 5 + length].decode("utf-8", "replace")
+            return self
+
+    class Trigger:
+        """The service."""
+
+        _type, _md5sum = _TYPE, _MD5
+        _request_class, _response_class = Request, Response
+
+    return Trigger, Response

@@ -1,9 +1,9 @@
 """Finds the comparisons of the static information in a module's syntax tree.
 
-A comparison is told by the line and column of its first character, in bytes as `ast` counts them
-(and from 1, where `ast` has columns from 0), and by its relation. In a chain each link is told by
-its left operand. A flag is told by its own position; where several expressions begin there, it is
-the whole condition, or operand of ``and``, ``or`` and ``not``, and not a part of it.
+A comparison is identified by its relation and by the line and column of its first character.
+Columns count bytes from 1 (in `ast` from 0). Each link of a chain is identified by its left
+operand. A flag is identified by its own position; where several expressions begin there, it is the
+whole condition or the whole operand of ``and``, ``or`` and ``not``.
 """
 
 from __future__ import annotations
@@ -42,13 +42,13 @@ class ListedPlace(NamedTuple):
 
 
 class FoundPlaces(NamedTuple):
-    """What is to be rewritten.
+    """What to rewrite.
 
     ``links``: comparison -> number of the link -> what it reports. ``flags``: expression -> what it
     reports. ``loops``: the iterated expression of a ``for`` -> what it reports. ``subjects``: the
     subject of a ``match`` -> what it reports. ``patterns``: a value in a ``case`` -> what it
-    reports. ``calls``: a call of a function that compares inside -> what it reports.
-    ``missing``: what is not there; ``unsupported``: what is, where it cannot be reported.
+    reports. ``calls``: a call of a function that compares inside -> what it reports. ``missing``:
+    comparisons that are not in the tree; ``unsupported``: those that are there and cannot report.
     """
 
     links: dict[ast.Compare, dict[int, list[ListedPlace]]]
@@ -63,7 +63,7 @@ class FoundPlaces(NamedTuple):
     def total(self) -> int:
         """How many listed comparisons were found."""
         links = sum(len(places) for link in self.links.values() for places in link.values())
-        # A conditional expression is one flag at two places.
+        # A conditional expression is one flag in two places.
         flags = len({place for places in self.flags.values() for place in places})
         others = (self.loops, self.subjects, self.patterns, self.calls)
         return links + flags + sum(len(places) for kind in others for places in kind.values())
@@ -81,13 +81,13 @@ def find(tree: ast.Module, listed: Sequence[Listed]) -> FoundPlaces:
 
 
 def matching(candidates: Sequence[ListedFile], text: str) -> ListedFile | None:
-    """The candidate with the most lines that are those of ``text``.
+    """The candidate that has the most lines in common with ``text``.
 
-    A copy, as an installed file is one, has the same lines at the same places. Half of them have to
-    be the same: a file that was changed a little is still itself, and another one of its name is
-    not.
+    A copy, such as an installed file, has the same lines at the same places. At least half of them
+    must be the same: a slightly changed file is still the same file, and another file of that name
+    is not.
     """
-    # A form feed, say, ends no line of Python.
+    # Not `splitlines`: in Python a form feed does not end a line.
     lines = re.split("\r\n|\r|\n", text)
 
     def is_same(listed: Listed) -> bool:
@@ -144,7 +144,7 @@ class _Index:
 
 
 def values_of(pattern: ast.AST) -> list[ast.expr]:
-    """The values of a pattern that is nothing but a value, or several with ``|`` between them."""
+    """The values of a pattern that is just a value, or several with ``|`` between them."""
     if type(pattern).__name__ == "MatchValue":
         return [pattern.value]  # type: ignore[attr-defined]
     if type(pattern).__name__ == "MatchOr":
@@ -158,7 +158,7 @@ def _position(node: ast.expr) -> Position:
 
 
 def conditions_of(node: ast.AST) -> Iterator[ast.expr]:
-    """The expressions whose truth ``node`` asks for."""
+    """The expressions whose truth ``node`` tests."""
     if isinstance(node, (ast.If, ast.While, ast.IfExp, ast.Assert)):
         yield node.test
     elif isinstance(node, ast.BoolOp):
@@ -172,7 +172,7 @@ def conditions_of(node: ast.AST) -> Iterator[ast.expr]:
 
 
 def operands_of(condition: ast.expr) -> Iterator[ast.expr]:
-    """The parts of a condition that are predicates by themselves."""
+    """The parts of a condition that are predicates of their own."""
     if isinstance(condition, ast.BoolOp):
         for value in condition.values:
             yield from operands_of(value)
@@ -186,7 +186,7 @@ def operands_of(condition: ast.expr) -> Iterator[ast.expr]:
 
 
 def _ends(node: ast.expr, listed: Listed) -> bool:
-    """Whether ``node`` ends where the static information says, if it does."""
+    """Whether ``node`` ends where the static information says; true where it says nothing."""
     if listed.end_lineno is None or listed.end_column is None:
         return True
     return (node.end_lineno, (node.end_col_offset or 0) + 1) == (
@@ -215,7 +215,7 @@ def _as_link(index: _Index, found: FoundPlaces, listed: Listed) -> bool:
 
 
 def _is_swapped(node: ast.Compare, link: int, listed: Listed) -> bool:
-    """Whether the threshold is the left operand: the relation has it on the right-hand side."""
+    """Whether the threshold is the left operand. Relations are listed with it on the right."""
     if listed.operand is not None:
         return listed.operand == "left"
     relation = RELATIONS[type(node.ops[link]).__name__]
@@ -233,7 +233,7 @@ def _is_swapped(node: ast.Compare, link: int, listed: Listed) -> bool:
 
 
 def _text(node: ast.expr) -> str:
-    """``self.limit`` as written in the source; empty for anything but a name."""
+    """``self.limit`` as it is written in the source; empty for anything but a name."""
     if isinstance(node, ast.Name):
         return node.id
     if isinstance(node, ast.Attribute):
@@ -249,15 +249,12 @@ def _text(node: ast.expr) -> str:
 
 def _as_call(index: _Index, found: FoundPlaces, listed: Listed) -> bool:
     for node in index.names.get((listed.lineno, listed.column), []):
-        if isinstance(node, ast.Call) and _ends(node, listed) and _has_names(node):
+        # The analysis lists no calls with `**`.
+        is_call = isinstance(node, ast.Call) and all(each.arg for each in node.keywords)
+        if is_call and _ends(node, listed):
             found.calls.setdefault(node, []).append(ListedPlace(listed, False))
             return True
     return False
-
-
-def _has_names(call: ast.Call) -> bool:
-    """Whether each keyword is given; the analysis lists no others."""
-    return all(keyword.arg is not None for keyword in call.keywords)
 
 
 def _as_pattern(index: _Index, found: FoundPlaces, listed: Listed) -> bool:
@@ -290,7 +287,9 @@ def _as_flag(index: _Index, found: FoundPlaces, listed: Listed) -> bool:
     if not operands:
         return False
     exact = [node for node in operands if _ends(node, listed)]
-    chosen = max(exact or operands, key=_length)
+    chosen = max(
+        exact or operands, key=lambda node: (node.end_lineno or 0, node.end_col_offset or 0)
+    )
     values = flags_of(chosen)
     for value in values:
         found.flags.setdefault(value, []).append(ListedPlace(listed, False))
@@ -300,16 +299,12 @@ def _as_flag(index: _Index, found: FoundPlaces, listed: Listed) -> bool:
 
 
 def flags_of(condition: ast.expr) -> list[ast.expr]:
-    """What may be chosen by a conditional expression, else the condition itself.
+    """The expressions between which a conditional expression chooses, else the condition itself.
 
-    Choices that are conditions in turn are none: the program asks for the truth of their parts, and
-    whoever asked for theirs, too, would ask twice.
+    Choices that are conditions themselves are left out: the program tests the truth of their parts,
+    and a report would test it a second time.
     """
     if isinstance(condition, ast.IfExp):
         return [*flags_of(condition.body), *flags_of(condition.orelse)]
     is_not = isinstance(condition, ast.UnaryOp) and isinstance(condition.op, ast.Not)
     return [] if is_not or isinstance(condition, (ast.BoolOp, ast.Compare)) else [condition]
-
-
-def _length(node: ast.expr) -> Position:
-    return node.end_lineno or 0, node.end_col_offset or 0

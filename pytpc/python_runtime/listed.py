@@ -1,7 +1,6 @@
 """The comparisons that should report, read from the static information.
 
-The hook does not check the files against the schema; unusable content is an error that names the
-file.
+The hook does not check files against the schema; unusable content is an error that names the file.
 """
 
 from __future__ import annotations
@@ -9,18 +8,22 @@ from __future__ import annotations
 import glob
 import json
 import os
+import re
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
-from pytpc.python_runtime.entry import program_of, stem_of
 from pytpc.python_runtime.errors import HookError
 
-# What `pytpc build` leaves in a workspace; it has all in it.
+# `pytpc build` writes this file, with all units of the workspace.
 BUILT = os.path.join(".tpc", "static.json")
 # Where static information lies below a workspace, a build folder or a folder of packages.
 _PLACES = ("*.json", "tpc/*.json", "*/tpc/*.json", "build/tpc/*.json", "build/*/tpc/*.json")
-
-
+# The script of an entry point has less than 1,500 bytes.
+_LONGEST = 4096
+_BY_SETUPTOOLS = re.compile(
+    r"^# EASY-INSTALL-ENTRY-SCRIPT: '([^'=]+)[^']*','console_scripts','([^']+)'", re.MULTILINE
+)
+_BY_PIP = re.compile(r"^from ([\w.]+) import \w+$", re.MULTILINE)
 _NOT_PYTHON = (".c", ".cc", ".cpp", ".cxx", ".h", ".hh", ".hpp", ".hxx")
 
 
@@ -39,22 +42,22 @@ class Listed(NamedTuple):
 
     @property
     def is_inside(self) -> bool:
-        """Whether it is inside of the library function that is called there."""
+        """Whether the library function that is called there makes the comparison."""
         return self.operand is not None and self.operand not in ("left", "right")
 
 
 class ListedFile(NamedTuple):
-    """A source file and its comparisons. ``path`` is absolute, as the analysis saw it."""
+    """A source file and its comparisons. ``path`` is absolute, from the machine of the analysis."""
 
     path: str
     comparisons: tuple[Listed, ...]
 
 
 class ListedFiles:
-    """The source files with comparisons, found by the last part of their names."""
+    """The source files with comparisons, found by their base names."""
 
     def __init__(self, files: Iterable[ListedFile]) -> None:
-        """Keep ``files``; several of one path are one."""
+        """Keep ``files``, and merge those with the same path."""
         merged: dict[str, dict[tuple[str, int, int, str], Listed]] = {}
         for file in files:
             into = merged.setdefault(file.path, {})
@@ -71,33 +74,29 @@ class ListedFiles:
         }
 
     def __len__(self) -> int:
-        """How many files."""
         return len(self._by_real)
 
     def is_exact(self, path: str) -> bool:
-        """Whether it is one of the files themselves, and no copy."""
+        """Whether ``path`` is one of these files itself, and not a copy."""
         return os.path.realpath(path) in self._by_real
 
     def candidates(self, path: str) -> list[ListedFile]:
-        """The files that the one at ``path`` may be a copy of; the very file alone where it is one.
+        """The files that the one at ``path`` may be a copy of; only itself where it is one of them.
 
-        A file that was installed, or lies on another machine, is told by its text: see
-        `pytpc.python_runtime.find.matching`.
+        `pytpc.python_runtime.find.matching` compares the text of a file that was installed or is on
+        another machine.
         """
-        named = self.by_name.get(os.path.basename(path), [])
-        if not named:
-            real = os.path.realpath(path)
-            named = self.by_name.get(os.path.basename(real), [])
-            if not named:
-                return []
-        exact = self._by_real.get(os.path.realpath(path))
-        return [exact] if exact is not None else named
+        real = os.path.realpath(path)
+        names = (os.path.basename(path), os.path.basename(real))
+        named = self.by_name.get(names[0]) or self.by_name.get(names[1], [])
+        exact = self._by_real.get(real)
+        return [exact] if named and exact is not None else named
 
 
 class _Unit(NamedTuple):
     """One link unit: a script with the modules that it imports.
 
-    ``script`` is its absolute path, None in files of before.
+    ``script`` is its absolute path, None in files of earlier versions.
     """
 
     name: str
@@ -107,76 +106,68 @@ class _Unit(NamedTuple):
     files: list[ListedFile]
 
     def is_called(self, stem: str) -> bool:
-        """Whether its script, or in files of before itself, has this name, without ``.py``."""
+        """Whether its script, or in earlier files the unit, has this name, without ``.py``."""
         return stem in (self.name, stem_of(self.script or self.name))
 
     def is_of(self, real: str) -> bool:
-        """Whether its script is the file with this path, in which no links are."""
+        """Whether its script is the file with this path, with symbolic links resolved."""
         return self.script is not None and os.path.realpath(self.script) == real
 
     def runs(self, module: tuple[str, ...]) -> bool:
-        """Whether its script is the module whose path may end so."""
+        """Whether the path of its script ends like this module's."""
         return self.script is not None and self.script.endswith(module)
 
     def has(self, module: tuple[str, ...]) -> bool:
-        """Whether there are comparisons in this module."""
+        """Whether this module has comparisons."""
         return any(file.path.endswith(module) for file in self.files)
 
 
 def read_table(paths: Iterable[str], script: str | None = None) -> ListedFiles:
-    """Read files of static information, merged ones, and folders that hold such files.
+    """Read static information: files of one unit, merged files, and folders with such files.
 
     Args:
-        paths: what is read.
-        script: the program that is to run. A module of several programs has a key for each of them;
-            those of ``script`` count, where there are any, because they tell who reports.
+        paths: what to read.
+        script: the program to run. A module of several programs has a key for each of them; the
+            keys of ``script`` are used, if there are any: they tell which program reports.
 
     Raises:
-        HookError: a file cannot be read, or is no static information; a folder has none.
+        HookError: a file cannot be read or is not static information; a folder has none.
     """
     units = _all_units(paths)
-    if script is not None:
-        units = _of_script(units, script)
-    return ListedFiles(file for unit in units for file in unit.files)
+    running = _of_script(units, script) if script is not None else []
+    return ListedFiles(file for unit in running or units for file in unit.files)
 
 
 def names_script(paths: Iterable[str], script: str) -> bool:
-    """Whether the static information has comparisons of this script, or of one of its name.
+    """Whether the static information has comparisons of this script, or of one with its name.
 
-    Of the script of an entry point those count that are in the module that it runs.
+    For the script of an entry point, comparisons of the module that it runs count.
 
     Raises:
-        HookError: as `read_table`.
+        HookError: as in `read_table`.
     """
-    program, real = program_of(script), os.path.realpath(script)
-    units = [unit for unit in _all_units(paths) if unit.files]
-    return any(
-        unit.is_called(program.stem)
-        or unit.is_of(real)
-        or unit.runs(program.files)
-        or unit.has(program.files)
-        for unit in units
-    )
+    return bool(_of_script([unit for unit in _all_units(paths) if unit.files], script))
 
 
 def _all_units(paths: Iterable[str]) -> list[_Unit]:
     units: list[_Unit] = []
     for path in paths:
-        units.extend(_of_folder(path) if os.path.isdir(path) else _of_document(path))
+        units += _of_folder(path) if os.path.isdir(path) else _units(_document(path), path)
     return units
 
 
 def _of_script(units: list[_Unit], script: str) -> list[_Unit]:
-    """The link units that the running script may be of; all of them where none is.
+    """The link units that the running script may be.
 
-    It is told by its file. One that was installed is told by its name, and by its package, after
-    which its folder is called; that of an entry point by the module that it runs.
+    A script is identified by its path. An installed script is identified by its name and its
+    package, which its folder is named after; the script of an entry point by the module that it
+    runs.
     """
     program = program_of(script)
     real = os.path.realpath(script)
     if program.module is not None:
         running = [unit for unit in units if unit.runs(program.files)]
-        # A module may have several entry points, whose units are called after them.
+        # A module may have several entry points; each gives its name to a unit.
         begun = [unit for unit in running if unit.name == program.stem]
         others = [unit for unit in units if unit.has(program.files)]
         if begun or running or others:
@@ -190,15 +181,13 @@ def _of_script(units: list[_Unit], script: str) -> list[_Unit]:
     ]
     folder = os.path.basename(os.path.dirname(os.path.abspath(script)))
     of_package = [unit for unit in named if unit.package == folder]
-    return (
-        [unit for unit in exact if unit in named] or exact or inside or of_package or named or units
-    )
+    return [unit for unit in exact if unit in named] or exact or inside or of_package or named
 
 
 def _of_folder(folder: str) -> list[_Unit]:
     built = os.path.join(folder, BUILT)
     if os.path.isfile(built):
-        return _of_document(built)
+        return _units(_document(built), built)
     found = sorted({path for place in _PLACES for path in glob.glob(os.path.join(folder, place))})
     units: list[_Unit] = []
     is_any = False
@@ -224,10 +213,6 @@ def _document(path: str) -> Any:  # noqa: ANN401
         raise HookError(f"not JSON: {error}", path) from error
 
 
-def _of_document(path: str) -> list[_Unit]:
-    return _units(_document(path), path)
-
-
 def _units(document: Any, path: str) -> list[_Unit]:  # noqa: ANN401
     units = []
     try:
@@ -250,7 +235,7 @@ def _units(document: Any, path: str) -> list[_Unit]:  # noqa: ANN401
 
 
 def _is_compiled(unit: dict[str, Any]) -> bool:
-    """Whether it is a program or library in C++, which may be called as a script is."""
+    """Whether it is a program or library in C++, which may have the name of a script."""
     tool = unit.get("tool")
     return tool is not None and tool.get("analysis") != "python"
 
@@ -267,3 +252,64 @@ def _listed(comparison: dict[str, Any]) -> Listed:
         operand=comparison.get("operand"),
         source_code=comparison["source_code"],
     )
+
+
+class EntryPoint(NamedTuple):
+    """A script's name without ``.py``, and for an entry point the module that it runs.
+
+    setuptools or pip writes the script of an entry point (``console_scripts``) when it installs a
+    package. The script has the name of the entry point, imports a module and calls a function of
+    it.
+    """
+
+    stem: str
+    module: str | None
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """The endings that the module's path may have."""
+        if self.module is None:
+            return ()
+        path = "/" + self.module.replace(".", "/")
+        return (f"{path}.py", f"{path}/__init__.py")
+
+
+def program_of(script: str) -> EntryPoint:
+    """The name of a script and the module that it runs; None for an unreadable script."""
+    return EntryPoint(stem_of(script), _module(script))
+
+
+def stem_of(script: str) -> str:
+    """The name of a script without ``.py``."""
+    name = os.path.basename(script)
+    return name[:-3] if name.endswith(".py") else name
+
+
+def _module(script: str) -> str | None:
+    try:
+        with open(script, "rb") as stream:
+            data = stream.read(_LONGEST + 1)
+    except OSError:
+        return None
+    if len(data) > _LONGEST or not data.startswith(b"#!") or b"sys.exit(" not in data:
+        return None
+    text = data.decode("utf-8", "replace")
+    by_setuptools = _BY_SETUPTOOLS.search(text)
+    if by_setuptools:
+        return _declared(*by_setuptools.groups())
+    by_pip = _BY_PIP.search(text)
+    return by_pip.group(1) if by_pip else None
+
+
+def _declared(distribution: str, name: str) -> str | None:
+    """The module of an entry point, from the metadata of the installed package."""
+    from importlib import metadata  # noqa: PLC0415
+
+    try:
+        points = metadata.distribution(distribution).entry_points
+    except metadata.PackageNotFoundError:
+        return None
+    for point in points:
+        if point.group == "console_scripts" and point.name == name:
+            return point.value.partition(":")[0].strip()
+    return None

@@ -1,7 +1,7 @@
-"""The import hook: a finder that asks the other finders, and a loader that compiles anew.
+"""The import hook: a finder that asks the other finders, and a loader that compiles modules anew.
 
-Only modules whose file has the name of one with listed comparisons are looked at. Their bytecode is
-not cached, so that nothing of ours gets into ``__pycache__`` and nothing from there hides a report.
+It looks only at modules whose file has the name of one with listed comparisons. It does not cache
+their bytecode: ``__pycache__`` never holds rewritten code, and cached code never replaces it.
 """
 
 from __future__ import annotations
@@ -14,39 +14,32 @@ from types import CodeType, ModuleType
 from typing import Any
 
 from pytpc.python_runtime import quiet
+from pytpc.python_runtime.errors import warn
 from pytpc.python_runtime.instrument import Instrument
-from pytpc.python_runtime.relay import relayed
-from pytpc.python_runtime.words import warn
+from pytpc.python_runtime.listed import ListedFile
 
 
 class ReportingLoader(importlib.machinery.SourceFileLoader):
-    """Loads a module from its source; all else, as ``inspect.getsource``, is the base's."""
+    """Loads a module from its source; the base class does all else (``inspect.getsource``)."""
 
     def __init__(self, fullname: str, path: str, instrument: Instrument) -> None:
-        """As the base; ``instrument`` compiles."""
         super().__init__(fullname, path)
         self._instrument = instrument
 
-    def get_code(self, fullname: str) -> CodeType:
-        """The rewritten code; the ordinary one if the module has nothing to report."""
+    def get_code(self, fullname: str) -> CodeType | None:
+        """The rewritten code, or the ordinary code of a module with nothing to report."""
         path = self.get_filename(fullname)
         data = self.get_data(path)
-        code = self._instrument.code(data, path) or relayed(data, path, self._instrument)
-        if code is not None:
-            return code
-        ordinary = super().get_code(fullname)
-        assert ordinary is not None
-        return ordinary
+        return self._instrument.code(data, path) or super().get_code(fullname)
 
 
 class ReportingFinder:
-    """Comes before the existing finders, and asks them."""
+    """Comes before the other finders, and asks them."""
 
     def __init__(self, instrument: Instrument) -> None:
-        """Packages are known by their folder's name."""
+        """A package is recognised by the name of its folder."""
         self._instrument = instrument
-        self._names = _module_names(instrument.table.by_name, instrument)
-        self._asked: set[str] = set()
+        self._names = _module_names(instrument.table.by_name)
 
     def find_spec(
         self,
@@ -62,20 +55,16 @@ class ReportingFinder:
         spec = self._other(fullname, path, target)
         if spec is None or not spec.origin or not isinstance(spec.origin, str):
             return spec
-        loader = spec.loader
-        if not isinstance(loader, importlib.machinery.SourceFileLoader):
-            if self._instrument.table.is_exact(spec.origin):
-                warn(f"{spec.origin}: not loaded from its source, and not reported")
-            return spec
-        is_init = os.path.basename(spec.origin) == "__init__.py"
-        if type(loader) is not importlib.machinery.SourceFileLoader:
-            if self._instrument.table.is_exact(spec.origin):
-                warn(
-                    f"{spec.origin}: loaded by {type(loader).__qualname__}, which may change it,"
-                    " and not reported"
-                )
-        elif is_init or self._instrument.knows(spec.origin):
-            spec.loader = ReportingLoader(fullname, spec.origin, self._instrument)
+        kind, table = type(spec.loader), self._instrument.table
+        if kind is importlib.machinery.SourceFileLoader:
+            is_init = os.path.basename(spec.origin) == "__init__.py"
+            if is_init or table.candidates(spec.origin):
+                spec.loader = ReportingLoader(fullname, spec.origin, self._instrument)
+        elif table.is_exact(spec.origin):
+            why = "it is not loaded from its source"
+            if issubclass(kind, importlib.machinery.SourceFileLoader):
+                why = f"it is loaded by {kind.__qualname__}, which may change it"
+            warn(f"{spec.origin} does not report: {why}")
         return spec
 
     @staticmethod
@@ -95,7 +84,7 @@ class ReportingFinder:
         return None
 
 
-def _module_names(by_name: dict[str, Any], instrument: Instrument) -> set[str]:
+def _module_names(by_name: dict[str, list[ListedFile]]) -> set[str]:
     """The last parts of the names of modules that may have comparisons."""
     names = set()
     for base, files in by_name.items():
@@ -107,9 +96,7 @@ def _module_names(by_name: dict[str, Any], instrument: Instrument) -> set[str]:
     return names
 
 
-def install(instrument: Instrument) -> ReportingFinder:
-    """Let modules that are imported from now on report."""
+def install(instrument: Instrument) -> None:
+    """Let modules report that are imported from now on."""
     quiet.watch_if_traced()
-    finder = ReportingFinder(instrument)
-    sys.meta_path.insert(0, finder)
-    return finder
+    sys.meta_path.insert(0, ReportingFinder(instrument))

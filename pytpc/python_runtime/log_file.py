@@ -1,10 +1,10 @@
 """The binary file of reports (docs/reference/formats.md), written straight into mapped memory.
 
-The kernel keeps what was written whatever happens to the process. Space is allocated on the disk
-before it is mapped, so that a full disk is an error and no signal. Each thread has chunks of its
-own; a place in one is claimed by one call of C, so that a signal's handler, or a finaliser, that
-reports in the middle of a report gets another place. ``what`` of a record is written last. Ctrl-C,
-or what else a handler raises, may end a report anywhere: a place that stays empty is filled.
+The kernel keeps what was written, whatever happens to the process. Space is allocated on disk
+before it is mapped, so that a full disk is an error and not a signal. Each thread has chunks of its
+own, and claims a place by one call into C: a signal handler or finaliser that reports in the middle
+of a report gets another place. ``what``, the first word of a record, is written last. Ctrl-C, or
+another exception of a handler, may end a report anywhere; the place that it left empty is filled.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import threading
 from collections.abc import Callable
 from itertools import count
 from time import monotonic_ns, time_ns
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from pytpc.python_runtime import ros_state
 from pytpc.python_runtime.config import Config
@@ -40,11 +40,11 @@ from pytpc.python_runtime.log_layout import (
     SYSTEM_CHUNK,
     THREAD_CHUNK,
     WHATS,
-    bounded,
     pack_integers,
     pack_report,
 )
-from pytpc.python_runtime.log_room import Extent, Room
+from pytpc.python_runtime.mapped_file import Extent, MappedFile, bounded
+from pytpc.python_runtime.sinks import LiveSlot
 
 if TYPE_CHECKING:
     from pytpc.python_runtime.sites import Reported, Take
@@ -53,7 +53,7 @@ _INTEGERS = struct.Struct("<Iqqq")
 
 
 class _Chunk:
-    """Records of one thread. ``claim()`` gives the byte of one; it may be behind ``end``."""
+    """Records of one thread. ``claim()`` gives the place of one, which may be behind ``end``."""
 
     __slots__ = ("begin", "bytes", "claim", "end", "words")
 
@@ -65,9 +65,9 @@ class _Chunk:
         self.end = begin + CHUNK_BYTES
 
     def fill(self, now: int, sim_ns: int) -> None:
-        """Write what says nothing new where a record was claimed and not written.
+        """Write a record without content where one was claimed and not written.
 
-        An empty one hides all that follow it.
+        A reader stops at an empty record.
         """
         end = min(self.claim() + RECORD_BYTES, self.end)
         for at in range(self.begin, end, RECORD_BYTES):
@@ -77,7 +77,7 @@ class _Chunk:
 
 
 class _NoChunk(_Chunk):
-    """Before the first one, and where there is no more room."""
+    """Before the first chunk, and where there is no more space."""
 
     __slots__ = ()
 
@@ -87,7 +87,7 @@ class _NoChunk(_Chunk):
 
 
 class _ThreadPlace:
-    """Where a thread writes: its chunk, and how many records were in those before."""
+    """Where a thread writes: its chunk, and the number of records in its earlier chunks."""
 
     __slots__ = ("chunk", "former", "is_changing", "number", "sim_ns", "written")
 
@@ -100,14 +100,14 @@ class _ThreadPlace:
         self.chunk: _Chunk = self.former
 
     def fill(self) -> None:
-        """A report was interrupted: its place may be in this chunk, or in the one before."""
+        """A report was interrupted: its place may be in this chunk or in the previous one."""
         now = monotonic_ns()
         for chunk in (self.former, self.chunk):
             chunk.fill(now, self.sim_ns)
 
 
 class _SystemChunk:
-    """Where records of the system are written: in ``extent`` from byte ``at`` to ``end``."""
+    """Where system records are written: in ``extent`` from byte ``at`` to ``end``."""
 
     __slots__ = ("at", "end", "extent", "first", "is_busy")
 
@@ -120,7 +120,7 @@ class _SystemChunk:
 
 
 class _Owner:
-    """A thread's hold on its place: when the thread ends, the next one takes it over."""
+    """Keeps a place for its thread; when the thread ends, another thread can take the place."""
 
     __slots__ = ("_free", "_place")
 
@@ -132,8 +132,8 @@ class _Owner:
         self._free.append(self._place)
 
 
-class LogFile(Room):
-    """One file, and what is written to it."""
+class LogFile(MappedFile):
+    """One file, and the records that are written to it."""
 
     def __init__(self, config: Config, parent: int, each_second: Callable[[], None]) -> None:
         """Make the file in its folder.
@@ -150,7 +150,7 @@ class LogFile(Room):
         self._system: _SystemChunk | None = None
         self._live: tuple[tuple[Extent, int], int] | None = None
         self._sync_at = 0
-        # When a report has to look about: at the next second, or at once in simulated time.
+        # When a report must call `look`: at the next second, or at once in simulated time.
         self._look_at = 0
         self._is_node_known = bool(node)
         self._nested = 0
@@ -161,7 +161,7 @@ class LogFile(Room):
     # --- reports
 
     def _taker(self) -> Take:
-        """The function that takes a report, with all that it needs as local variables."""
+        """The function that takes a report, with all that it needs in local variables."""
         local, whats, pack, steady = self._local, WHATS, pack_report, monotonic_ns
 
         def take(one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
@@ -170,7 +170,7 @@ class LogFile(Room):
             except AttributeError:
                 place = self._new_place()
             try:
-                # A signal's handler may change the chunk at any time: it is looked at once.
+                # Read it once: a signal handler may change it at any time.
                 chunk = place.chunk
                 at = chunk.claim()
                 now = steady()
@@ -190,12 +190,12 @@ class LogFile(Room):
     def _prepared(
         self, place: _ThreadPlace, one: Reported, chunk: _Chunk, at: int, now: int
     ) -> tuple[_Chunk, int] | None:
-        """Where to write when something is in the way; None when there is no room."""
+        """Where to write in all but the ordinary case; None where there is no space."""
         if now >= self._sync_at:
             self.look(now)
             self._each_second()
         if one.file is not self:
-            self._announce(one)
+            self.announce(one)
         found = (chunk, at) if at < chunk.end else self._claimed(place)
         if found is not None and (self.is_simulated or place.sim_ns != -1):
             return self._simulated(place, found, now)
@@ -209,7 +209,7 @@ class LogFile(Room):
             if at < chunk.end:
                 return chunk, at
             if place.is_changing:
-                # From within the change itself.
+                # A signal handler reports while the chunk changes.
                 self._nested += 1
                 return None
             if not self._next_chunk(place):
@@ -288,18 +288,18 @@ class LogFile(Room):
         self._header[NODE_AT : NODE_AT + 1] = raw[:1]
         self._is_node_known = True
 
-    # --- what is of the system
+    # --- system records
 
-    def _write(self, what: int, raw: bytes) -> bool:
-        """Write a record of the system; ``raw`` is all of it but ``what``. False without room.
+    def write(self, what: int, raw: bytes) -> bool:
+        """Write a system record; ``raw`` is all of it but ``what``. False where there is no space.
 
-        Its place is taken only when it is written: what is broken off leaves no gap. Who reports in
-        the middle of this, as a signal's handler may, begins another chunk.
+        Its place is taken only when it is written, so that an interrupted record leaves no gap. A
+        report in the middle of this, from a signal handler, begins another chunk.
         """
         with self._lock:
             size = -(-(len(raw) + 4) // RECORD_BYTES) * RECORD_BYTES
             chunk = self._system
-            # What is left over at the end of a chunk counts as used.
+            # The rest of the old chunk counts as used.
             if chunk is None or chunk.is_busy or chunk.at + size > chunk.end:
                 first = 0 if chunk is None else chunk.first + RECORDS_OF_CHUNK
                 found = self.new_chunk(SYSTEM_CHUNK, 0, first)
@@ -317,10 +317,10 @@ class LogFile(Room):
         return True
 
     def _integers(self, what: int, site: int, now: int, first: int, second: int) -> None:
-        self._write(what, _INTEGERS.pack(site, now, first, second))
+        self.write(what, _INTEGERS.pack(site, now, first, second))
 
-    def new_slot(self) -> tuple[Any, Any, int] | None:
-        """Room for a live summary: the bytes and words of its part of the file, and its place."""
+    def new_slot(self) -> LiveSlot | None:
+        """A place for a live summary; None where there is no space."""
         with self._lock:
             if self._live is None or self._live[1] == SLOTS_OF_CHUNK:
                 found = self.new_chunk(LIVE_CHUNK, self.thread_number(), 0)
@@ -330,23 +330,19 @@ class LogFile(Room):
             (extent, begin), used = self._live
             self._live = ((extent, begin), used + 1)
             at = begin + CHUNK_HEADER_BYTES + used * SLOT_BYTES
-            return extent.bytes, extent.words, at
+            return LiveSlot(extent.bytes, extent.words, at)
 
-    def _announce(self, one: Reported) -> None:
+    def announce(self, one: Reported) -> None:
+        """Record once which key a number stands for."""
         with self._lock:
             if one.file is self:
                 return
             raw = one.key.encode("utf-8")[:LONGEST_KEY]
-            if self._write(SITE, struct.pack("<Iq", one.number, len(raw)) + raw):
+            if self.write(SITE, struct.pack("<Iq", one.number, len(raw)) + raw):
                 one.file = self
 
-    def announce(self, one: Reported) -> None:
-        """Say what the number of a key is."""
-        if one.file is not self:
-            self._announce(one)
-
     def look(self, now: int) -> None:
-        """Once a second: note the clocks against each other, and the node's state in ROS."""
+        """Once a second, record how the clocks relate, and the node's state in ROS."""
         with self._lock:
             if now < self._sync_at:
                 return
@@ -363,13 +359,9 @@ class LogFile(Room):
             self._integers(SYNC, 0, before + (after - before) // 2, real, known.ros_ns)
 
     def write_policy(self, config: Config) -> None:
-        """Note that this policy applies from now on."""
+        """Record that this policy applies from now on."""
         self._integers(POLICY, config.policy == "edges", monotonic_ns(), config.period_ns, 0)
 
     def write_dropped(self, one: int, number: int, flops: int, why: str) -> None:
-        """Note that reports of a comparison (0: unknown) were dropped."""
+        """Record that reports of a comparison (0: unknown) were dropped."""
         self._integers(DROPPED | REASONS[why] << 16, one, monotonic_ns(), number, flops)
-
-    def write_summary(self, raw: bytes, what: int) -> None:
-        """A summary without its first word."""
-        self._write(what, raw)

@@ -7,12 +7,9 @@ from time import monotonic_ns
 from typing import TYPE_CHECKING
 
 from pytpc.python_runtime import ros_state
-from pytpc.python_runtime.file_sink import FileSink, LiveSlot
-from pytpc.python_runtime.sinks import PeriodSummary, Sink
+from pytpc.python_runtime.sinks import FileSink, PeriodSummary, Sink
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from pytpc.python_runtime.config import Config
     from pytpc.python_runtime.sites import Reported
 
@@ -42,7 +39,7 @@ class Caps:
         self._sink.settle()
 
     def is_over(self, one: Reported, is_flop: bool) -> bool:
-        """Whether a report exceeds a cap; then it is counted."""
+        """Whether a report exceeds a cap; if so, it is counted."""
         if not (self._site or self._process):
             return False
         second = monotonic_ns() // _SECOND
@@ -67,7 +64,7 @@ class Caps:
             return True
 
     def account(self) -> None:
-        """Report what was dropped since the last time."""
+        """Report what was dropped since the last call."""
         with self._lock:
             over, self._over = self._over, {}
         for one, counts in over.items():
@@ -76,27 +73,16 @@ class Caps:
                     self._sink.dropped(one, counts[at], counts[at + 1], why)
 
 
-class _OpenPeriod:
-    """The open period of one comparison in one thread."""
-
-    __slots__ = ("kept", "slot")
-
-    def __init__(self, kept: PeriodSummary, slot: LiveSlot | None) -> None:
-        self.kept = kept
-        self.slot = slot
-
-
 class Edges:
-    """Each flop is reported, and of all evaluations a summary for each thread and period."""
+    """Each flop is reported; all evaluations are summarised by thread and period."""
 
     def __init__(self, config: Config, sink: Sink, caps: Caps) -> None:
-        """Periods begin now."""
         self._sink = sink
         self._caps = caps
         self._period_ns = config.period_ns
         self._start = monotonic_ns()
         self._lock = threading.RLock()
-        self._open: dict[tuple[int, Reported], _OpenPeriod] = {}
+        self._open: dict[tuple[int, Reported], PeriodSummary] = {}
         self._file = sink.file if isinstance(sink, FileSink) else None
 
     def take(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
@@ -107,31 +93,29 @@ class Edges:
         thread = self._file.thread_number() if self._file is not None else threading.get_ident()
         with self._lock:
             key = (thread, one)
-            held = self._open.get(key)
-            if held is None:
-                held = self._open[key] = self._new(thread & 0xFFFFFFFF, one)
-            kept = held.kept
+            kept = self._open.get(key)
+            if kept is None:
+                kept = self._open[key] = self._new(thread & 0xFFFFFFFF, one)
             if kept.evaluations and kept.period != period:
-                self._close(held)
+                self._close(kept)
             if not kept.evaluations:
                 kept.begin(period, now, ros)
             kept.flops += self._edge(one, result, cmp, thresh, res)
             kept.add(result, cmp, thresh, res)
             kept.end_ns, kept.end_ros_ns = now, ros
-            if held.slot is not None:
-                held.slot.write(kept)
+            if kept.slot is not None:
+                kept.slot.write(kept)
         self._sink.settle()
 
-    def _new(self, thread: int, one: Reported) -> _OpenPeriod:
-        """A comparison that is new to its thread."""
-        slot = None
-        if self._file is not None:
-            self._file.announce(one)
-            slot = LiveSlot(self._file)
-        return _OpenPeriod(PeriodSummary(one, thread), slot)
+    def _new(self, thread: int, one: Reported) -> PeriodSummary:
+        """The summary of a comparison that is new to its thread."""
+        if self._file is None:
+            return PeriodSummary(one, thread)
+        self._file.announce(one)
+        return PeriodSummary(one, thread, self._file.new_slot())
 
     def _edge(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> int:
-        """Report it if the predicate's result has changed."""
+        """Report it if the result of the predicate has changed."""
         last, one.last = one.last, int(result)
         if last == result:
             return 0
@@ -140,25 +124,17 @@ class Edges:
             self._sink.edge(one, result, cmp, thresh, res)
         return int(is_flop)
 
-    def _close(self, held: _OpenPeriod) -> None:
-        self._sink.summary(held.kept)
-        held.kept.evaluations = 0
-        if held.slot is not None:
-            held.slot.begin()
+    def _close(self, kept: PeriodSummary) -> None:
+        self._sink.summary(kept)
+        kept.evaluations = 0
+        if kept.slot is not None:
+            kept.slot.begin()
 
     def flush(self, *, all_of_them: bool) -> None:
-        """Hand on the summaries of periods that are over, and if asked those of open ones."""
+        """Send the summaries of periods that are over, and on request those of open ones."""
         period = (monotonic_ns() - self._start) // self._period_ns + 1 & 0xFFFFFFFF
         with self._lock:
-            for held in self._open.values():
-                if held.kept.evaluations and (all_of_them or held.kept.period != period):
-                    self._close(held)
+            for kept in self._open.values():
+                if kept.evaluations and (all_of_them or kept.period != period):
+                    self._close(kept)
         self._sink.settle()
-
-
-def forget(reported: Iterable[Reported]) -> None:
-    """Forget all evaluations, after a fork or when the policy changes."""
-    for one in reported:
-        one.last = -1
-        one.meter[:] = [0, 0]
-        one.file = None

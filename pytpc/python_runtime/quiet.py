@@ -1,13 +1,13 @@
-"""Keeps the hook unseen by tracers, and passes on what a signal's handler raises within it.
+"""Hides the hook from tracers, and passes on what a signal handler raises within it.
 
-A debugger, a profiler and coverage are told of every Python frame. The functions of the hook are
-Python, but there is one kind of function that CPython runs with tracing off: a hook of
-``sys.audit``. `Quiet` is a class whose instances are made by C alone: ``Quiet(function, a, b)``
-lets the audit hook call ``function(a, b)`` and keeps the iterator that it gives.
+A debugger, a profiler and coverage see every Python frame. The functions of the hook are Python,
+but CPython runs one kind of function with tracing off: a hook of ``sys.audit``. `Quiet` is a class
+whose instances are made in C alone: ``Quiet(function, a, b)`` lets the audit hook call
+``function(a, b)`` and keeps the iterator that it returns.
 
-Every audit event of a process costs more once it has a hook in Python (some 0.2 us). So there is
-none until the program imports a tracer, or has one; and only when that begins to trace do the sites
-change to `Quiet`.
+With an audit hook in Python every audit event of a process costs about 0.2 us more. So there is no
+hook until the program imports a tracer or has one, and the sites change to `Quiet` only when it
+begins to trace.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterator
     from types import TracebackType
 
-    # Gives an iterator, whose next element is what the function comes to, or which raises.
+    # Returns an iterator whose next element is the function's result, or which raises.
     Function = Callable[..., Iterator[Any]]
 
 _REPORT = "tpc.report"
 _TRACING = frozenset({"sys.settrace", "sys.setprofile", "sys.monitoring.register_callback"})
-# Modules without which few programs trace.
+# Few programs trace without one of these modules.
 TRACERS = frozenset(
     {
         "_pydevd_bundle", "bdb", "cProfile", "coverage", "debugpy", "hunter", "line_profiler",
@@ -40,17 +40,17 @@ _FOLDER = os.path.dirname(os.path.abspath(__file__))
 
 
 def _method(function: Callable[..., Any]) -> Any:  # noqa: ANN401
-    """A method in C. The wrapper of ``lru_cache`` is what C has that binds its object."""
+    """A method in C: the wrapper of ``lru_cache`` is a C function that binds its object."""
     return lru_cache(maxsize=0)(function)
 
 
 class Quiet:
-    """``Quiet(function, *arguments)``: what the function gives, which was called unseen."""
+    """``Quiet(function, *arguments)`` calls the function unseen, and keeps what it returns."""
 
     __slots__ = ("given",)
     __init__ = _method(partial(sys.audit, _REPORT))
     __iter__ = _method(attrgetter("given"))
-    # For `quiet.__next__()`, as the rewritten program has it.
+    # The rewritten program calls `quiet.__next__()`.
     __next__ = property(attrgetter("given.__next__"))
 
 
@@ -73,15 +73,19 @@ class _State:
 
 
 class Site:
-    """The functions that a place calls, as attributes; each returns an iterator."""
+    """The functions that a place calls, as attributes; each returns an iterator.
+
+    Once tracing begins, `be_quiet` hides them.
+    """
 
     __slots__ = ("__weakref__", "_names")
 
     def offer(self, **functions: Function) -> None:
-        """Make these the attributes."""
+        """Make these functions the attributes."""
         self._names = tuple(functions)
         for name, function in functions.items():
             setattr(self, name, hidden(function))
+        _SITES.add(self)
 
     def be_quiet(self) -> None:
         """Hide them from tracers from now on."""
@@ -92,22 +96,17 @@ class Site:
 _SITES: WeakSet[Site] = WeakSet()
 
 
-def keep(site: Site) -> None:
-    """Let ``site`` be told when tracing begins."""
-    _SITES.add(site)
-
-
 def hidden(function: Function) -> Function:
     """The function to call instead of ``function`` now."""
     return partial(Quiet, function) if _State.is_quiet else function
 
 
-# An iterator over what an iterator over iterators comes to.
+# The elements of the iterators in an iterator.
 flat = chain.from_iterable
 
 
 def watch() -> None:
-    """Called when the program has a tracer, or imports one."""
+    """Call this when the program has a tracer, or imports one."""
     if not _State.is_watching:
         _State.is_watching = True
         sys.addaudithook(_hook)
@@ -116,7 +115,7 @@ def watch() -> None:
 
 
 def watch_if_traced() -> None:
-    """At the start: where the interpreter was started by a tracer, or has one."""
+    """Call `watch` if a tracer started the interpreter, or is imported."""
     if sys.gettrace() is not None or sys.getprofile() is not None or TRACERS & sys.modules.keys():
         watch()
 
@@ -130,14 +129,14 @@ def begin() -> None:
 
 
 def caller() -> int:
-    """Which frame of the program has called the function that asks."""
+    """The frame of the program that called the function which asks."""
     frame = sys._getframe(2)
     if frame.f_code is _hook.__code__ and frame.f_back is not None:
         frame = frame.f_back
     return id(frame)
 
 
-# --- what a signal's handler raises
+# --- exceptions of signal handlers
 
 
 def _nothing() -> Generator[None, None, None]:
@@ -148,7 +147,7 @@ def _nothing() -> Generator[None, None, None]:
 def raising(error: BaseException) -> Iterator[Any]:
     """An iterator that raises an outside error as if it came from the program's line.
 
-    `throw` of a generator that is through raises without a frame of its own.
+    `throw` of a generator that has ended raises without a frame of its own.
     """
     error.__traceback__ = foreign_frames(error.__traceback__)
     over = _nothing()
@@ -157,7 +156,7 @@ def raising(error: BaseException) -> Iterator[Any]:
 
 
 def foreign_frames(traceback: TracebackType | None) -> TracebackType | None:
-    """A traceback without leading frames of this folder."""
+    """A traceback without its leading frames in this folder."""
     while traceback is not None:
         file = traceback.tb_frame.f_code.co_filename
         if os.path.dirname(os.path.abspath(file)) != _FOLDER:
@@ -169,8 +168,8 @@ def foreign_frames(traceback: TracebackType | None) -> TracebackType | None:
 def is_programs(error: Exception) -> bool:
     """Whether an error raised in the hook comes neither from it nor from a function that it calls.
 
-    It may come up anywhere: raised by a handler of the program's for a signal, as a time-out is, or
-    by another thread.
+    It may be raised anywhere: by a signal handler of the program, as for a time-out, or by another
+    thread.
     """
     import signal  # noqa: PLC0415
 

@@ -1,13 +1,13 @@
 """Rewrites a module so that its listed comparisons report.
 
-Text -> syntax tree -> the same tree with calls in it -> code. Each subexpression stays where it
-was, is evaluated exactly once and in the original order, by the program's own frame: ``yield``,
-``await`` and ``:=`` in an operand are as before. What was rewritten has the position that the
-comparison had, so that tracebacks, debuggers and coverage see the lines and columns of the source.
+Text -> syntax tree -> the same tree with calls in it -> code. The program's own frame still
+evaluates each subexpression exactly once, in the original place and order: ``yield``, ``await`` and
+``:=`` in an operand work as before. Rewritten code keeps the position of the comparison, so that
+tracebacks, debuggers and coverage show the lines and columns of the source.
 
-The calls go to an object (`pytpc.python_runtime.sites`) that is a constant of the code: nothing is
-added to any namespace. `ast` knows no such constants, so the tree has a text for each, which is
-replaced in the compiled code.
+The calls go to an object (`pytpc.python_runtime.sites`) that is a constant of the code: no
+namespace changes. `ast` has no such constants, so the tree has a text for each, and the compiled
+code gets the object in its place.
 """
 
 from __future__ import annotations
@@ -17,9 +17,8 @@ import sys
 from types import CodeType
 from typing import TYPE_CHECKING, NamedTuple
 
-from pytpc.python_runtime.call_sites import ComparedInside, LibraryCall
-from pytpc.python_runtime.control_sites import Loop, Subject
 from pytpc.python_runtime.find import FoundPlaces, ListedPlace, find, values_of
+from pytpc.python_runtime.implicit_sites import ComparedInside, LibraryCall, Loop, Subject
 from pytpc.python_runtime.listed import Listed
 from pytpc.python_runtime.sites import ComparisonSite, FlagSite, Reported
 
@@ -28,20 +27,20 @@ if TYPE_CHECKING:
 
     Register = Callable[[ListedPlace], Reported]
 
-# Python 3.11 says of a failed `assert` that it is where the comparison in it is, if there is one.
-# The same holds for an error in the truth of a condition behind a comparison.
+# Python 3.11 gives a failed `assert` the position of the comparison in it, if there is one, and an
+# error in the truth of a condition that of the comparison before it.
 _ASSERTS_AT_COMPARISON = sys.version_info[:2] == (3, 11)
-# From Python 3.13 on, the compiler joins a comparison with the truth that a kept `not` asks of it,
-# and what either raises has the place of `not`.
+# From Python 3.13 on, the compiler joins a comparison with a `not` whose result is kept: errors of
+# either have the position of `not`.
 _NOT_COMPARES = sys.version_info >= (3, 13)
-# Until Python 3.11 an error in the truth of a condition has the place of what asks for it; after
-# that, the condition's own.
+# Until Python 3.11 an error in the truth of a condition has the position of the code that tests it,
+# later that of the condition.
 _ASKERS_PLACE = sys.version_info < (3, 12)
 _MARK = "\0tpc constant "
 
 
 class Rewritten(NamedTuple):
-    """A module's code, how many comparisons report, those that are not in it, or cannot report."""
+    """A module's code, the number of comparisons that report, and those that do not."""
 
     code: CodeType
     instrumented: int
@@ -56,18 +55,18 @@ def rewrite(
 
     Args:
         source: its text or bytes, or anything else that ``compile`` takes.
-        path: what tracebacks call it.
+        path: its name in tracebacks.
         listed: the comparisons of this module.
         register: gives the report of a place.
-        optimize: as of ``compile``; -1 for what the interpreter was started with.
+        optimize: as in ``compile``; -1: as the interpreter was started.
 
     Raises:
-        SyntaxError: as ``compile`` has it.
+        SyntaxError: as in ``compile``.
     """
     tree = compile(source, path, "exec", ast.PyCF_ONLY_AST, dont_inherit=True)  # type: ignore[call-overload]
     found = find(tree, listed)
     constants: dict[str, object] = {}
-    _Rewriter(found, register, constants).module(tree)
+    _Rewriter(found, register, constants).fields(tree)
     code = compile(tree, path, "exec", dont_inherit=True, optimize=optimize)
     return Rewritten(
         with_constants(code, constants), found.total(), found.missing, found.unsupported
@@ -75,12 +74,12 @@ def rewrite(
 
 
 def constant_text(number: int) -> str:
-    """The node that represents an object which will be a constant of the code."""
+    """The text that stands in the tree for an object among the constants of the code."""
     return f"{_MARK}{number}"
 
 
 def with_constants(code: CodeType, constants: dict[str, object]) -> CodeType:
-    """The objects in the places of the texts that stand for them, in all nested code too."""
+    """The code with objects in place of the texts that stand for them, nested code included."""
 
     def replaced(constant: object) -> object:
         if isinstance(constant, CodeType):
@@ -96,9 +95,9 @@ def with_constants(code: CodeType, constants: dict[str, object]) -> CodeType:
 
 
 class _Chain(NamedTuple):
-    """A comparison, which of its links report what, and whether its truth alone is asked for.
+    """A comparison, what its links report, and whether only its truth is used.
 
-    ``place`` is the expression whose place its last link has.
+    ``place`` is the expression whose position its last link gets.
     """
 
     node: ast.Compare
@@ -110,8 +109,7 @@ class _Chain(NamedTuple):
 class _Rewriter:
     """Changes a tree in place.
 
-    An expression is visited with what the program does with it: ``asked`` where it asks for its
-    truth, once, and for nothing else.
+    ``asked``: the program tests the truth of an expression once, and uses nothing else of it.
     """
 
     def __init__(
@@ -120,14 +118,11 @@ class _Rewriter:
         self._found = found
         self._register = register
         self._constants = constants
-        # What asks for the truth of a condition: a statement, an expression, a pattern.
+        # What tests the truth of a condition: a statement, an expression, a pattern.
         self._asker: ast.AST = ast.Module(body=[], type_ignores=[])
 
-    def module(self, tree: ast.AST) -> None:
-        """Rewrite all of a module."""
-        self._fields(tree)
-
-    def _fields(self, node: ast.AST) -> None:
+    def fields(self, node: ast.AST) -> None:
+        """Rewrite the expressions and statements in ``node``."""
         if isinstance(node, ast.stmt):
             self._asker = node
         elif type(node).__name__ == "match_case":
@@ -143,20 +138,20 @@ class _Rewriter:
                     for item in value
                 ]
             elif isinstance(value, ast.AST):
-                self._fields(value)
+                self.fields(value)
 
     def _other(self, item: object) -> object:
         if type(item).__name__ == "Match":
             self._match(item)  # type: ignore[arg-type]
         elif isinstance(item, ast.AST):
-            self._fields(item)
+            self.fields(item)
         return item
 
     def _match(self, node: ast.Match) -> None:
         """A ``match`` of a parameter, or with a parameter among its values.
 
-        ``case VALUE`` becomes ``case _ if subject == VALUE``, which is what it means. Each guard
-        ends with a call that says that the case is taken, and a last case says that none was.
+        ``case VALUE`` becomes ``case _ if subject == VALUE``, which means the same. Each guard ends
+        with a call that reports the case as taken; a last case reports that none was.
         """
         compared = [
             [value for value in values_of(case.pattern) if value in self._found.patterns]
@@ -164,7 +159,7 @@ class _Rewriter:
         ]
         places = self._found.subjects.get(node.subject, [])
         original = node.subject
-        self._fields(node)
+        self.fields(node)
         if not places and not any(compared):
             return
         subject = Subject(tuple(self._register(place) for place in places))
@@ -179,11 +174,11 @@ class _Rewriter:
                 and case.guard is None
             )
             if is_default and not is_last:
-                # Not allowed, as the compiler will say.
+                # A syntax error, which the compiler reports.
                 continue
             where = ast.copy_location(ast.Constant(value=True, kind=None), case.pattern)
             if is_default:
-                # It stays the one that takes everything: how a `match` with one ends is no other.
+                # It still matches everything, so that the `match` ends as before.
                 call = self._call(self._constant(subject, where), "default", [], where)
                 case.body.insert(0, ast.copy_location(ast.Expr(value=call), where))
                 return
@@ -199,7 +194,7 @@ class _Rewriter:
         node.cases.append(ast.match_case(pattern=anything, guard=none, body=[nothing]))
 
     def _equality(self, case: ast.match_case, subject: Subject, where: ast.expr) -> ast.expr:
-        """The pattern of a case as a condition; in its place there is one that takes everything."""
+        """The pattern of a case as a condition; the case gets a pattern that matches everything."""
         conditions = []
         for value in values_of(case.pattern):
             held = self._call(self._constant(subject, where), "held", [], value)
@@ -220,7 +215,7 @@ class _Rewriter:
     def _expression(
         self, node: ast.expr, asked: bool, negation: ast.expr | None = None
     ) -> ast.expr:
-        """What replaces ``node``, the operand of ``negation`` if there is one."""
+        """The replacement of ``node``, which is the operand of ``negation`` if there is one."""
         flags = self._found.flags.get(node)
         links = self._found.links.get(node) if isinstance(node, ast.Compare) else None
         asker = self._asker
@@ -252,7 +247,7 @@ class _Rewriter:
         return new
 
     def _parts(self, node: ast.expr, asked: bool) -> None:
-        """Rewrite the operands. What is asked of ``and``, ``or``, ``not``, ``? :`` is of theirs."""
+        """Rewrite the operands. If ``and``, ``or``, ``not`` or ``? :`` is asked, so are they."""
         if isinstance(node, ast.BoolOp):
             node.values[:] = [self._expression(value, asked) for value in node.values]
         elif isinstance(node, ast.IfExp):
@@ -260,10 +255,10 @@ class _Rewriter:
             node.body = self._expression(node.body, asked)
             node.orelse = self._expression(node.orelse, asked)
         elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
-            # As a value `not x` asks by itself, and what x raises then has the place of `not`.
+            # As a value, `not x` itself tests x, and errors of x have the position of `not`.
             node.operand = self._expression(node.operand, asked, None if asked else node)
         else:
-            self._fields(node)
+            self.fields(node)
 
     def _constant(self, value: object, where: ast.expr) -> ast.expr:
         mark = constant_text(len(self._constants))
@@ -273,9 +268,9 @@ class _Rewriter:
     def _call(
         self, site: ast.expr, method: str, arguments: list[ast.expr], to: ast.AST
     ) -> ast.expr:
-        """``SITE.method(arguments).__next__()``, whose attribute must not end on a line of its own.
+        """``SITE.method(arguments).__next__()``, whose attribute ends on the line of the call.
 
-        A call is on the line on which its attribute ends, where that is another one.
+        Otherwise Python takes the line on which the attribute ends for that of the call.
         """
         attribute = ast.Attribute(value=site, attr=method, ctx=ast.Load())
         _at(attribute, site)
@@ -288,8 +283,7 @@ class _Rewriter:
     def _chain(self, chain: _Chain, link: int, left: ast.expr, first: ast.expr) -> ast.expr:
         """The comparison from ``link`` on, with ``left`` as its left operand.
 
-        ``first`` is where its evaluation begins. The links behind the last one that reports stay as
-        they are.
+        Its evaluation begins at ``first``. Links behind the last one that reports are not changed.
         """
         node, links = chain.node, chain.links
         if link > max(links):
@@ -325,14 +319,14 @@ class _Rewriter:
         return self._call(site, "call", [node.func, *node.args, keywords], node)
 
     def _flag(self, node: ast.expr, places: list[ListedPlace], asker: ast.AST | None) -> ast.expr:
-        """``node`` with a report of its truth, for which ``asker`` asks if anything does."""
+        """``node`` with a report of its truth, which ``asker`` tests; None where it is a value."""
         flag = FlagSite(tuple(self._register(place) for place in places))
         method = "value" if asker is None else "truth"
         place = node if asker is None or not _ASKERS_PLACE else asker
         return self._call(self._constant(flag, _first(node)), method, [node], place)
 
 
-# What asks nothing itself where its truth is asked for.
+# These test nothing themselves where their truth is tested.
 _BRANCHES = (ast.BoolOp, ast.IfExp, ast.UnaryOp)
 _ASKING = {
     "If": ("test",),
@@ -341,7 +335,7 @@ _ASKING = {
     "comprehension": ("ifs",),
     "match_case": ("guard",),
 }
-# What an expression evaluates first.
+# The field that an expression evaluates first.
 _FIRST = {
     "Attribute": "value",
     "Await": "value",
@@ -362,13 +356,13 @@ def _is_asked(node: ast.AST, field: str) -> bool:
 
 
 def _is_joined(node: ast.Compare) -> bool:
-    """Whether a kept ``not`` and this comparison, its operand, are one to the compiler."""
+    """Whether the compiler joins this comparison with the ``not`` whose operand it is."""
     is_ordinary = not isinstance(node.ops[0], (ast.Is, ast.IsNot, ast.In, ast.NotIn))
     return _NOT_COMPARES and len(node.ops) == 1 and is_ordinary
 
 
 def _first(node: ast.expr) -> ast.expr:
-    """The part of an expression that is evaluated first, which is where tracing sees it begin."""
+    """The part of an expression that is evaluated first; tracing sees it begin there."""
     while True:
         field = _FIRST.get(type(node).__name__)
         if field is not None:
@@ -384,7 +378,7 @@ def _first(node: ast.expr) -> ast.expr:
 
 
 def _at(node: ast.expr, where: ast.expr) -> ast.expr:
-    """``node`` with no width, where ``where`` begins."""
+    """``node`` with no width, at the beginning of ``where``."""
     ast.copy_location(node, where)
     node.end_lineno, node.end_col_offset = node.lineno, node.col_offset
     return node

@@ -1,4 +1,4 @@
-"""The sinks that speak ROS, through the rospy that the program has imported."""
+"""The sinks that use ROS, through the rospy that the program has imported."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from time import monotonic_ns
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pytpc.python_runtime import ros_state
+from pytpc.python_runtime.errors import many, warn
 from pytpc.python_runtime.sinks import (
     PeriodSummary,
     Sink,
@@ -17,7 +18,6 @@ from pytpc.python_runtime.sinks import (
     seconds,
     summary_line,
 )
-from pytpc.python_runtime.words import many, warn
 
 if TYPE_CHECKING:
     from pytpc.python_runtime.sites import Reported
@@ -28,24 +28,23 @@ _MESSAGE_BYTES = 64 * 1024
 _QUEUE_MESSAGES = 512
 _ROSOUT_MESSAGES = 100
 _BATCH_NS = 190_000_000
-# The first message waits for the subscribers that the master knows: each takes its time to connect.
+# The first message waits until the subscribers that the master knows have connected.
 _GATHER_NS = 1_000_000_000
 
 
 class RosoutSink(Sink):
-    """One line each on /rosout, as C++ nodes have it in the thesis.
+    """One line on /rosout for each report, like that of C++ nodes in the thesis.
 
-    By a publisher, as rospy's own log does it at last: ``loginfo`` looks through the stack for each
-    line and writes it to the console and to a file, too, which costs ten times as much.
+    It uses a publisher of its own, as rospy's log does in the end. ``loginfo`` costs ten times as
+    much: for each line it searches the stack, and writes to the console and to a file.
     """
 
     def __init__(self) -> None:
-        """Nothing is advertised yet."""
         self._publisher: Any = None
         self._message: Any = None
         self._inside = threading.local()
         self._lost = 0
-        # Lines, and the evaluations that each stands for.
+        # Lines, each with the number of evaluations in it.
         self._waiting: deque[tuple[str, int]] = deque()
 
     def take(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
@@ -62,12 +61,12 @@ class RosoutSink(Sink):
         line = f"threshold_summary:{summary_line(summary)}"
         self._waiting.append((line, summary.evaluations))
 
-    def dropped(self, one: Reported | None, count: int, flops: int, why: str) -> None:
+    def dropped(self, one: Reported, count: int, flops: int, why: str) -> None:
         """One line."""
         self._waiting.append((f"threshold_dropped:{dropped_line(one, count, flops, why)}", 0))
 
     def settle(self) -> None:
-        """Send the waiting lines while no lock of the hook is held."""
+        """Send the waiting lines, now that no lock of the hook is held."""
         while self._waiting:
             try:
                 line, evaluations = self._waiting.popleft()
@@ -78,7 +77,7 @@ class RosoutSink(Sink):
 
     def _send(self, line: str, evaluations: int) -> None:
         ros = ros_state.rospy()
-        # What handles a signal in the middle of it may itself compare.
+        # A signal handler may run, and compare, in the middle of this.
         if ros is None or ros.is_shutdown() or getattr(self._inside, "is_inside", False):
             self._lost += evaluations
             return
@@ -95,7 +94,7 @@ class RosoutSink(Sink):
     def _advertise(self, ros: Any) -> None:  # noqa: ANN401
         from rosgraph_msgs.msg import Log  # noqa: PLC0415
 
-        # As rospy's own publisher there, whose connections it shares.
+        # The same arguments as rospy's own publisher, so that they share connections.
         self._publisher = ros.Publisher("/rosout", Log, latch=True, queue_size=_ROSOUT_MESSAGES)
         self._message = Log
 
@@ -110,12 +109,12 @@ class RosoutSink(Sink):
         if lost:
             warn(
                 f"{many(lost, 'evaluation')} came before rospy.init_node, after the node's end, or"
-                " within another report: not on /rosout"
+                " within another report: they are not on /rosout"
             )
 
 
 class _Waiting(NamedTuple):
-    """A line to be sent: a report to be formatted, or a finished line. ``at_ns`` is ROS time."""
+    """A line to send: an unformatted report, or a finished line. ``at_ns`` is ROS time."""
 
     at_ns: int
     one: Reported | None
@@ -124,10 +123,12 @@ class _Waiting(NamedTuple):
 
 
 class TopicSink(Sink):
-    """Batches on /threshold_information, made by the helper thread."""
+    """Batches on /threshold_information; the helper thread sends them."""
+
+    # Subscribers come and go.
+    is_polled = True
 
     def __init__(self) -> None:
-        """Nothing is advertised yet."""
         self._waiting: deque[_Waiting] = deque()
         self._lock = threading.RLock()
         self._publisher: Any = None
@@ -149,7 +150,7 @@ class TopicSink(Sink):
         line = f"threshold_summary:{summary_line(summary)}"
         self._keep(_Waiting(summary.end_ros_ns, None, None, line))
 
-    def dropped(self, one: Reported | None, count: int, flops: int, why: str) -> None:
+    def dropped(self, one: Reported, count: int, flops: int, why: str) -> None:
         """Keep it until the next batch."""
         line = f"threshold_dropped:{dropped_line(one, count, flops, why)}"
         self._dropped_in_all += count
@@ -164,7 +165,7 @@ class TopicSink(Sink):
                 self._evict(self._waiting.popleft())
 
     def _evict(self, oldest: _Waiting) -> None:
-        """What made room for others is counted for each comparison."""
+        """Count, for its comparison, a report that was dropped to make space."""
         if oldest.one is None or oldest.report is None:
             return
         counts = self._evicted.setdefault(oldest.one, [0, 0])
@@ -174,11 +175,7 @@ class TopicSink(Sink):
         counts[1] += last is not None and last != oldest.report[0]
         self._dropped_in_all += 1
 
-    def wants_turns(self) -> bool:
-        """Always: subscribers come and go."""
-        return True
-
-    def turn(self) -> None:
+    def poll(self) -> None:
         """Advertise, and send batches that are due."""
         ros = ros_state.rospy()
         if ros is None or ros.is_shutdown():
@@ -195,7 +192,7 @@ class TopicSink(Sink):
         self._expected = _subscribers(ros)
         self._gather_until = monotonic_ns() + _GATHER_NS
         self._publisher = ros.Publisher(TOPIC, String, queue_size=_QUEUE_MESSAGES)
-        # While the node shuts down its topics are still open in these hooks, and in no later ones.
+        # In this hook of the node's shutdown its topics are still open; later they are not.
         ros.on_shutdown(lambda: self._send(at_once=True))
 
     def _send(self, *, at_once: bool) -> None:
@@ -238,13 +235,13 @@ class TopicSink(Sink):
             self._waiting.clear()
         if unsent:
             warn(
-                f"{many(unsent, 'evaluation')} not sent on {TOPIC}: nobody listened, or the node"
-                " was shut down"
+                f"{many(unsent, 'evaluation')} were not sent on {TOPIC}: nobody listened, or the"
+                " node was shut down"
             )
 
 
 def _messages(batch: deque[_Waiting]) -> list[tuple[int, str]]:
-    """The texts of messages of about 64 KiB, and how many of their lines are numbered reports."""
+    """The texts of messages of about 64 KiB, each with the number of its numbered reports."""
     messages: list[tuple[int, str]] = []
     lines: list[str] = []
     count = size = 0
@@ -262,10 +259,10 @@ def _messages(batch: deque[_Waiting]) -> list[tuple[int, str]]:
 
 
 def _subscribers(ros: Any) -> int:  # noqa: ANN401
-    """How many subscribers of the topic the master knows."""
+    """The number of the topic's subscribers that the master knows."""
     try:
         _, _, state = ros.get_master().getSystemState()
         return sum(len(nodes) for topic, nodes in state[1] if topic == TOPIC)
     except Exception:
-        # The master does not answer: nobody is waited for.
+        # The master does not answer: wait for nobody.
         return 0

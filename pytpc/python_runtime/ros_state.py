@@ -1,4 +1,4 @@
-"""What rospy knows, if the program has imported it; this module never imports it."""
+"""The state of rospy, if the program has imported it; this module never imports it."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ _UNKNOWN = Now("", 0, False)
 
 
 def rospy() -> Any:  # noqa: ANN401
-    """The module, once the program has a node that was initialised; else None."""
+    """The module, once the program has initialised a node; else None."""
     module = sys.modules.get("rospy")
     core = sys.modules.get("rospy.core")
     try:
         return module if core is not None and core.is_initialized() else None
     except AttributeError:
-        # It is being imported.
+        # It is still being imported.
         return None
 
 
@@ -35,13 +35,13 @@ def is_imported() -> bool:
 
 
 def time_now_ns() -> int:
-    """The node's time where it is simulated, else the wall's."""
+    """The node's time where it is simulated, else the wall clock's."""
     rostime = sys.modules.get("rospy.rostime")
     try:
         if rostime is None or rostime.is_wallclock():
             return time_ns()
     except Exception:
-        # It is being imported, or has no time yet.
+        # It is still being imported, or has no time yet.
         return time_ns()
     return now().ros_ns
 
@@ -56,5 +56,5 @@ def now() -> Now:
         simulated = not rostime.is_wallclock()
         return Now(str(ros.get_name()), int(ros.get_rostime().to_nsec()), simulated)
     except Exception:
-        # Its time is not initialised yet, or no longer.
+        # Its time is not initialised yet, or it is shut down.
         return _UNKNOWN

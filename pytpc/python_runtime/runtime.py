@@ -1,9 +1,9 @@
 """The settings of this process, and the sink and policy that follow from them.
 
-Nothing happens until the first report. Where the program has imported rospy there is then one
-helper thread, which waits for its node, takes over its parameters, and sends what the sinks keep.
-For the sink ``file`` it ends after that: what is due once a second is done by the report that finds
-it due. A child after a fork goes on with the settings that held and begins a file of its own.
+Nothing happens until the first report. If the program has imported rospy, one helper thread then
+waits for its node, applies its parameters, and sends what the sinks keep. For the sink ``file``
+this thread then ends: the first report of each second does the periodic work. After a fork the
+child keeps the settings and begins a file of its own.
 """
 
 from __future__ import annotations
@@ -18,18 +18,17 @@ from typing import TYPE_CHECKING
 from pytpc.python_runtime import ros_state, sites
 from pytpc.python_runtime.config import Config, of_environment
 from pytpc.python_runtime.control import Control
-from pytpc.python_runtime.file_sink import FileSink
+from pytpc.python_runtime.errors import warn
 from pytpc.python_runtime.log_file import LogFile
-from pytpc.python_runtime.policies import Caps, Edges, forget
+from pytpc.python_runtime.policies import Caps, Edges
 from pytpc.python_runtime.ros_sinks import RosoutSink, TopicSink
-from pytpc.python_runtime.sinks import Sink
+from pytpc.python_runtime.sinks import FileSink, Sink
 from pytpc.python_runtime.sites import Reported
-from pytpc.python_runtime.words import warn
 
 if TYPE_CHECKING:
     from pytpc.python_runtime.find import ListedPlace
 
-_TURN_S = 0.02
+_POLL_S = 0.02
 _LATE_S = 0.25
 
 
@@ -37,7 +36,6 @@ class Runtime:
     """The state of the process. There is one instance, `RUNTIME`."""
 
     def __init__(self) -> None:
-        """Nothing is started."""
         self._lock = threading.RLock()
         self._reported: dict[str, Reported] = {}
         self._config: Config | None = None
@@ -61,7 +59,7 @@ class Runtime:
         )
 
     def register(self, place: ListedPlace) -> Reported:
-        """The report of a place; one for each key and side."""
+        """The report of a place; there is one for each key and side."""
         key = place.listed.key
         with self._lock:
             known = self._reported.get(key)
@@ -79,22 +77,22 @@ class Runtime:
 
     @property
     def config(self) -> Config:
-        """What holds."""
+        """The current settings."""
         with self._lock:
             if self._config is None:
                 self._config = of_environment()
             return self._config
 
     def _first(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
-        """The first report, before anything is chosen."""
+        """Take the first report: choose sink and policy before."""
         self.start()
         if self._is_started:
             sites.take(one, result, cmp, thresh, res)
 
     def start(self) -> None:
-        """Choose what the environment says, or what held before a fork."""
+        """Apply the settings of the environment, or those from before a fork."""
         with self._lock:
-            # A signal's handler may report, or raise, in the middle of this.
+            # A signal handler may report, or raise, in the middle of this.
             if self._is_started or self._is_starting:
                 return
             self._is_starting = True
@@ -118,7 +116,7 @@ class Runtime:
             if not self._choose(config):
                 return False
             self._config = config
-            if self._sink.wants_turns() and not self._has_helper and not self._was_node:
+            if self._sink.is_polled and not self._has_helper and not self._was_node:
                 self._start_helper()
             return True
 
@@ -158,8 +156,8 @@ class Runtime:
         if self._was_node:
             topic = "/rosout" if config.sink == "rosout" else "/threshold_information"
             warn(
-                f"a process that was forked from a node reports nothing on {topic}; TPC_SINK=file"
-                " works in it"
+                f"process {os.getpid()} was forked from a node: its reports do not reach {topic};"
+                " the sink file records them"
             )
             return Sink()
         kind = RosoutSink if config.sink == "rosout" else TopicSink
@@ -183,28 +181,28 @@ class Runtime:
         return self._sink if is_it else FileSink(self.file)
 
     def _flush(self) -> None:
-        """Hand what was kept until now to its sink."""
+        """Send what is still kept to its sink."""
         if self._edges is not None:
             self._edges.flush(all_of_them=True)
         self._caps.account()
 
     def _look(self) -> None:
-        """Once a second, from within a report to the file: has the program imported rospy?"""
+        """Once a second, in a report to the file: start the helper if rospy is imported by now."""
         if not self._has_helper and not self._is_served and ros_state.is_imported():
             self._start_helper()
 
     # --- the helper thread
 
     def _start_helper(self) -> None:
-        """Start the helper, no thread of `threading`: programs wait for those, or count them."""
+        """Start the helper, but not by `threading`: programs count its threads or wait for them."""
         self._has_helper = True
         try:
             _thread.start_new_thread(self._help, ())
         except RuntimeError:
-            warn("no thread could be made: settings cannot be changed while the node runs")
+            warn("cannot start a thread: settings cannot be changed while the node runs")
 
     def _help(self) -> None:
-        """Serve the node's settings, and give the sinks their turns, while there are any."""
+        """Serve the node's settings, and poll the sinks, as long as needed."""
         process = os.getpid()
         retry_at = 0.0
         while self._has_helper and os.getpid() == process:
@@ -216,15 +214,15 @@ class Runtime:
                 except Exception as error:
                     retry_at = time.monotonic() + 2.0
                     if not ros.is_shutdown():
-                        warn(f"the settings of {ros.get_name()} come later: {error}")
+                        warn(f"the settings of {ros.get_name()} cannot be read yet: {error}")
             sink, edges = self._sink, self._edges
-            is_busy = sink.wants_turns() or (edges is not None and self.file is None)
+            is_busy = sink.is_polled or (edges is not None and self.file is None)
             if self._is_served and not is_busy:
                 break
             if edges is not None and self.file is None:
                 edges.flush(all_of_them=False)
-            sink.turn()
-            time.sleep(_TURN_S if is_busy or ros is not None else _LATE_S)
+            sink.poll()
+            time.sleep(_POLL_S if is_busy or ros is not None else _LATE_S)
         self._has_helper = False
 
     def status(self) -> str:
@@ -243,7 +241,7 @@ class Runtime:
             return " ".join(word for word in words if word)
 
     def end(self) -> None:
-        """The process ends by itself."""
+        """Called when the process ends by itself."""
         with self._lock:
             self._has_helper = False
             self._flush()
@@ -258,10 +256,10 @@ class Runtime:
         self._lock.release()
 
     def _child(self) -> None:
-        """In the child: the file is the parent's, other threads are gone, and the locks are new."""
+        """In the child: the file belongs to the parent, other threads are gone, locks are new."""
         self._lock = threading.RLock()
         if self.file is not None:
-            # Never unmapped: its descriptors may be others' by now.
+            # Never unmapped: its descriptors may belong to other files by now.
             _FORMER.append(self.file)
         self._was_node = self._was_node or ros_state.rospy() is not None
         if self._is_started:
@@ -271,10 +269,13 @@ class Runtime:
         self._edges = None
         self._caps = Caps(Config(), self._sink)
         self._has_helper = False
-        # There is no node in a child, and so no settings but those that held.
+        # A child has no node, and keeps its settings.
         self._is_served = self._is_served or self._was_node
         self._is_started = self._is_starting = False
-        forget(self.all_reported())
+        for one in self.all_reported():
+            one.last = -1
+            one.meter[:] = [0, 0]
+            one.file = None
         sites.set_take(self._first)
 
 

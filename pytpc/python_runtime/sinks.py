@@ -1,20 +1,31 @@
-"""What a sink takes, and its lines of text (docs/reference/formats.md#reports)."""
+"""What sinks take, their lines of text (docs/reference/formats.md#reports), and the sink ``file``.
+
+The fastest way of a report to a file is in `pytpc.python_runtime.log_file`.
+"""
 
 from __future__ import annotations
 
+import struct
 from math import inf, isfinite, nan
-from typing import TYPE_CHECKING
+from time import monotonic_ns
+from typing import TYPE_CHECKING, Any
+
+from pytpc.python_runtime.log_layout import OUTCOME_BIT, RESULT_BIT, SUMMARY
 
 if TYPE_CHECKING:
+    from pytpc.python_runtime.log_file import LogFile
     from pytpc.python_runtime.sites import Reported
 
+# A summary without its first word, up to its two spare words.
+_SUMMARY = struct.Struct("<IqddqIIQQQddddddQqq16x")
+_COUNT_AT, _BEGUN_AT = 48, 160
 
 # |cmp - thresh| above which an evaluation is far (docs/reference/scores.md#score-of-type-ii).
 _FAR = 1e-4
 
 
 class PeriodSummary:
-    """All evaluations of one comparison in one thread and period, as they come. Times in ns."""
+    """A summary of all evaluations of one comparison in one thread and period. Times in ns."""
 
     __slots__ = (
         "absolute",
@@ -35,15 +46,17 @@ class PeriodSummary:
         "period",
         "res",
         "result",
+        "slot",
         "thread",
         "thresh",
         "total",
     )
 
-    def __init__(self, one: Reported, thread: int) -> None:
-        """Nothing was evaluated yet."""
+    def __init__(self, one: Reported, thread: int, slot: LiveSlot | None = None) -> None:
+        """``slot``: where it is kept up to date in a file."""
         self.one = one
         self.thread = thread
+        self.slot = slot
         self.begin(0, 0, 0)
 
     def begin(self, period: int, now_ns: int, ros_ns: int) -> None:
@@ -77,41 +90,40 @@ class PeriodSummary:
 
 
 class Sink:
-    """Where reports go. This one goes nowhere; the others replace what they need."""
+    """A destination of reports. This one drops them; subclasses replace what they need."""
+
+    # Whether the helper thread calls `poll`.
+    is_polled = False
 
     def take(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
         """One evaluation."""
 
     def edge(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
-        """A flop, or a first evaluation, under the policy ``edges``."""
+        """A flop, or the first evaluation, under the policy ``edges``."""
         self.take(one, result, cmp, thresh, res)
 
     def summary(self, summary: PeriodSummary) -> None:
         """A period that is over."""
 
-    def dropped(self, one: Reported | None, count: int, flops: int, why: str) -> None:
-        """What was not reported since the last account."""
+    def dropped(self, one: Reported, count: int, flops: int, why: str) -> None:
+        """Reports that were dropped since the last call."""
 
     def settle(self) -> None:
-        """Send what was handed over while a lock of ours was held: no program's code runs then."""
+        """Send what was kept while the hook held a lock: now it may run code of the program."""
 
-    def turn(self) -> None:
-        """The helper thread's, some fifty times a second."""
-
-    def wants_turns(self) -> bool:
-        """Whether there is something to do in `turn`."""
-        return False
+    def poll(self) -> None:
+        """Called by the helper thread some fifty times a second."""
 
     def status(self) -> str:
-        """What a person may want to know of it; words with ``=`` in them."""
+        """Information for people: words with ``=`` in them."""
         return ""
 
     def end(self) -> None:
-        """The last moment."""
+        """The process ends."""
 
 
 def number(value: float) -> str:
-    """The shortest text that reads back as the same double, as C++ writes it."""
+    """The shortest text that reads back as the same double, like C++ writes it."""
     text = repr(value)
     return text[:-2] if text.endswith(".0") else text
 
@@ -122,14 +134,14 @@ def report_line(one: Reported, result: bool, cmp: float, thresh: float, res: boo
 
 
 def seconds(ns: int, decimals: int) -> str:
-    """A time in seconds with so many decimals, cut and not rounded."""
+    """A time in seconds with this many decimals, truncated."""
     sign = "-" if ns < 0 else ""
     whole, rest = divmod(abs(ns), 1_000_000_000)
     return f"{sign}{whole}.{rest:09d}"[: len(sign) + len(str(whole)) + 1 + decimals]
 
 
 def summary_line(kept: PeriodSummary) -> str:
-    """The same with count, flops, and so on."""
+    """A line like `report_line`'s, with count, flops and statistics."""
     usable = kept.evaluations - kept.odd
     numbers = (kept.least, kept.largest, kept.total, kept.absolute, kept.low, kept.high)
     least, largest, total, absolute, low, high = numbers if usable else (nan,) * 6
@@ -143,6 +155,93 @@ def summary_line(kept: PeriodSummary) -> str:
     )
 
 
-def dropped_line(one: Reported | None, count: int, flops: int, why: str) -> str:
+def dropped_line(one: Reported, count: int, flops: int, why: str) -> str:
     """``KEY,count:N,flops:F,why:W``."""
-    return f"{one.key if one is not None else ''},count:{count},flops:{flops},why:{why}"
+    return f"{one.key},count:{count},flops:{flops},why:{why}"
+
+
+def _packed(kept: PeriodSummary, *, is_open: bool = False) -> bytes:
+    """A summary as the file has it, without its first word."""
+    return _SUMMARY.pack(
+        kept.one.number,
+        kept.begin_ns,
+        kept.cmp,
+        kept.thresh,
+        0 if is_open else kept.end_ns,
+        kept.period,
+        kept.thread,
+        kept.evaluations,
+        kept.odd,
+        kept.far,
+        kept.least,
+        kept.largest,
+        kept.total,
+        kept.absolute,
+        kept.low,
+        kept.high,
+        kept.flops,
+        kept.begin_ros_ns,
+        0 if is_open else kept.end_ros_ns,
+    )
+
+
+def _what_of(kept: PeriodSummary) -> int:
+    """The first word of a summary."""
+    return SUMMARY | (RESULT_BIT if kept.result else 0) | (OUTCOME_BIT if kept.res else 0)
+
+
+class FileSink(Sink):
+    """Writes all but the reports of ``every``, which `LogFile.take` writes."""
+
+    def __init__(self, file: LogFile) -> None:
+        self.file = file
+        self.take = file.take  # type: ignore[method-assign,assignment]
+        self.edge = file.edge  # type: ignore[method-assign]
+
+    def summary(self, summary: PeriodSummary) -> None:
+        """Write it as a system record."""
+        self.file.announce(summary.one)
+        self.file.write(_what_of(summary), _packed(summary))
+
+    def dropped(self, one: Reported, count: int, flops: int, why: str) -> None:
+        """Write a record of it."""
+        self.file.announce(one)
+        self.file.write_dropped(one.number, count, flops, why)
+
+    def status(self) -> str:
+        """Its path, and whether it still takes reports."""
+        return f"state={'stopped' if self.file.is_stopped else 'open'} file={self.file.path}"
+
+    def end(self) -> None:
+        """Record the clocks a last time, and close the file."""
+        self.file.look(monotonic_ns())
+        self.file.close()
+
+
+class LiveSlot:
+    """Keeps the summary of an open period up to date in the file: a killed process loses none.
+
+    ``begun`` counts up before an evaluation is written, and ``count`` with it, in one piece. A
+    reader ignores a summary whose two counts differ.
+    """
+
+    __slots__ = ("_at", "_bytes", "_words")
+
+    def __init__(self, mapped: Any, words: Any, at: int) -> None:  # noqa: ANN401
+        """The slot at the byte ``at`` of a part of the file, as its bytes and as its words."""
+        self._bytes = mapped
+        self._words = words
+        self._at = at
+
+    def begin(self) -> None:
+        """Begin a period."""
+        struct.pack_into("<Q", self._bytes, self._at + _COUNT_AT, 0)
+        struct.pack_into("<Q", self._bytes, self._at + _BEGUN_AT, 0)
+
+    def write(self, kept: PeriodSummary) -> None:
+        """Write the summary, with one more evaluation; its end is open."""
+        at = self._at
+        struct.pack_into("<Q", self._bytes, at + _BEGUN_AT, kept.evaluations)
+        self._words[at >> 2] = _what_of(kept)
+        raw = _packed(kept, is_open=True)
+        self._bytes[at + 4 : at + 4 + len(raw)] = raw

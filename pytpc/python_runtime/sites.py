@@ -1,18 +1,18 @@
 """The functions that a rewritten comparison calls.
 
-``a < b`` has become ``SITE.compare(a, b).__next__()``, with SITE among the constants of the code.
-`compare` gives an iterator, and ``__next__`` of it the outcome. The reason for the detour: where
-``a < b`` runs code of the program, or may raise, it has to run without a frame of ours between the
-program and its method, so that tracebacks, ``sys._getframe`` and the depth of recursion are as they
-were. ``map(report, (a,), (b,), map(operator.lt, (a,), (b,)))`` is all C until ``report`` is called
-with the outcome. For numbers and texts of the language itself, whose comparison neither runs code
-nor raises, `compare` does it at once and gives one of two iterators that stand for True and False.
+``a < b`` has become ``SITE.compare(a, b).__next__()``, where SITE is a constant of the code.
+`compare` returns an iterator, and its ``__next__`` the outcome. The reason: where ``a < b`` runs
+code of the program, or may raise, no frame of ours may be between the program and its method. Then
+tracebacks, ``sys._getframe`` and the depth of recursion are as before. ``map(report, (a,), (b,),
+map(operator.lt, (a,), (b,)))`` is all C until it calls ``report`` with the outcome. Comparing
+Python's own numbers and texts runs no code of the program and raises nothing: there `compare`
+compares at once, and returns one of two iterators, for True and for False.
 
-A report never calls anything of the program's objects: numbers are read by the methods of the base
-classes, and what has none is reported by its outcome alone.
+A report never calls methods of the program's objects. It reads numbers by the methods of the base
+classes; for anything else it has the outcome alone.
 
-Each function that a rewritten program calls gives an iterator, so that it may change to a class in
-C under a tracer, and so that what a signal's handler raises within it is raised by C in the
+Every function that a rewritten program calls returns an iterator. So it can be exchanged for a
+class in C under a tracer, and what a signal handler raises within it is raised by C on the
 program's own line: see `pytpc.python_runtime.quiet`.
 """
 
@@ -20,11 +20,10 @@ from __future__ import annotations
 
 import math
 import operator
-import threading
 from itertools import repeat, tee
 from typing import TYPE_CHECKING, Any
 
-from pytpc.python_runtime.quiet import Site, caller, flat, hidden, is_programs, keep, raising
+from pytpc.python_runtime.quiet import Site, caller, flat, hidden, is_programs, raising
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -42,7 +41,7 @@ FALSE = repeat(False)
 class Reported:
     """One key that reports, with what the sinks keep for it."""
 
-    __slots__ = ("file", "key", "last", "lock", "meter", "number", "over", "swapped")
+    __slots__ = ("file", "key", "last", "meter", "number", "swapped")
 
     def __init__(self, key: str, number: int, swapped: bool) -> None:
         """``swapped``: the threshold is the left operand. Numbers begin with 1."""
@@ -51,9 +50,7 @@ class Reported:
         self.swapped = swapped
         self.file: object = None
         self.last = -1
-        self.lock = threading.Lock()
         self.meter = [0, 0]
-        self.over = [0, 0, 0, 0]
 
 
 def _ordinary(function: Operator) -> Operator:
@@ -70,16 +67,16 @@ _PLAIN_OPERATIONS: dict[str, Operator] = {
     "Is": operator.is_,
     "IsNot": operator.is_not,
 }
-# Name of the operator in `ast` -> what gives an iterator over its outcome, in C throughout.
+# Name of the operator in `ast` -> a function that returns an iterator over the outcome, all in C.
 _LAZY_OPERATIONS: dict[str, Operator] = {
     **{name: _ordinary(function) for name, function in _PLAIN_OPERATIONS.items()},
     "In": lambda a, b: map(operator.contains, (b,), (a,)),
     "NotIn": lambda a, b: map(operator.not_, map(operator.contains, (b,), (a,))),
 }
 
-# Whose comparison with one another neither raises nor runs code of the program.
-_NUMBERS = frozenset({int, float, bool})
-# Whose truth does neither.
+# Comparing these with one another raises nothing and runs no code of the program.
+NUMBERS = frozenset({int, float, bool})
+# Nor does testing the truth of these.
 _PLAIN = frozenset(
     {int, float, bool, str, bytes, type(None), list, tuple, dict, set, frozenset, complex, range}
 )
@@ -87,7 +84,7 @@ _DURATIONS = frozenset({"genpy.rostime", "rospy.rostime"})
 
 
 def nothing(_reported: Reported, _result: bool, _cmp: float, _thresh: float, _res: bool) -> None:
-    """Takes reports while none are wanted."""
+    """Takes reports while nobody wants them."""
 
 
 _take: Take = nothing
@@ -95,31 +92,31 @@ _counts = {"unknown_outcomes": 0}
 
 
 def set_take(take: Take) -> None:
-    """Set the function that takes every report from now on."""
+    """Set the function that takes all reports from now on."""
     global _take  # noqa: PLW0603
     _take = take
 
 
 def take(one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
-    """Hand a report to the function that takes reports now."""
+    """Pass a report to the current function."""
     _take(one, result, cmp, thresh, res)
 
 
 def unknown_outcomes() -> int:
-    """Evaluations that were not reported: testing their truth could run the program's code."""
+    """The number of evaluations not reported because testing them could run the program's code."""
     return _counts["unknown_outcomes"]
 
 
 def count_unknown() -> None:
-    """An evaluation is not reported, because only the program may ask for what it came to."""
+    """Count an evaluation whose truth only the program may test."""
     _counts["unknown_outcomes"] += 1
 
 
 def number_of(value: Any) -> float | None:  # noqa: ANN401
-    """``value`` as a number; None if it is not one, or if only its own code could convert it.
+    """``value`` as a number; None if it is none, or if only its own code could convert it.
 
-    Numbers are those of the language and of classes derived from them (by the base's method),
-    numpy's scalars, and ROS's times and durations in seconds.
+    Numbers are Python's and those of derived classes (by the method of the base), numpy's scalars,
+    and ROS times and durations in seconds.
     """
     try:
         return _number_of(value, type(value))
@@ -136,7 +133,7 @@ def _number_of(value: Any, kind: type) -> float | None:  # noqa: ANN401
     elif issubclass(kind, int):
         found = int.__float__(value)
     elif kind.__module__ == "numpy":
-        # An array of one element has __float__ too, but is no number of the program.
+        # An array of one element has __float__ too, but is not a number to the program.
         is_scalar = hasattr(kind, "dtype") and kind.__name__ not in ("ndarray", "matrix")
         found = float(value) if is_scalar else None
     elif kind.__module__ in _DURATIONS:
@@ -155,7 +152,7 @@ def truth_of(value: object) -> bool | None:
 
 
 def values(cmp: object, thresh: object, outcome: bool) -> tuple[float, float]:
-    """What is reported of two values; if one is not a number, the outcome is reported for both."""
+    """The two numbers of a report; where one value is not a number, both are the outcome."""
     left = number_of(cmp)
     right = number_of(thresh)
     if left is None or right is None:
@@ -164,16 +161,16 @@ def values(cmp: object, thresh: object, outcome: bool) -> tuple[float, float]:
 
 
 class ComparisonSite(Site):
-    """One link of a comparison. See the module's text.
+    """One link of a comparison; see the module's docstring.
 
-    A link that others follow keeps its right operand and its outcome, by the frame in which it was
-    evaluated, until one of `right`, `outcome` and `failed` asks for them, which it does at once.
+    A link with others behind it keeps its right operand and its outcome for the current frame. The
+    code that follows gets them at once from `right`, `outcome` or `failed`.
     """
 
     __slots__ = ("compare", "failed", "link", "outcome", "right", "truth")
 
     def __init__(self, operation: str, reported: tuple[Reported, ...]) -> None:
-        """``operation`` is the name of the class of the operator in `ast`."""
+        """``operation`` is the name of the operator's class in `ast`."""
         held: Held = {}
 
         def right() -> Iterator[object]:
@@ -185,7 +182,7 @@ class ComparisonSite(Site):
             return repeat(held.pop(caller())[1])
 
         def failed() -> Iterator[bool]:
-            """False in the place of an outcome that was false and is only asked for its truth."""
+            """False, for a false outcome that is used for its truth alone."""
             del held[caller()]
             return FALSE
 
@@ -198,11 +195,10 @@ class ComparisonSite(Site):
             outcome=outcome,
             failed=failed,
         )
-        keep(self)
 
 
 def logger(reported: tuple[Reported, ...]) -> Callable[[Any, Any, bool], None]:
-    """Reports an outcome under each key. Exceptions are the program's own."""
+    """The function that reports an outcome under each key. Exceptions are the program's own."""
 
     def log(a: object, b: object, outcome: bool) -> None:
         try:
@@ -213,7 +209,7 @@ def logger(reported: tuple[Reported, ...]) -> Callable[[Any, Any, bool], None]:
                 else:
                     _take(one, outcome, left, right, outcome)
         except Exception as error:
-            # A report that cannot be made is not worth a node.
+            # A failed report must not stop the node.
             if is_programs(error):
                 raise
 
@@ -223,10 +219,10 @@ def logger(reported: tuple[Reported, ...]) -> Callable[[Any, Any, bool], None]:
 def _comparer(
     operation: str, reported: tuple[Reported, ...]
 ) -> tuple[Callable[[Any, Any], Iterator[Any]], Callable[[Any, Any], Iterator[Any]]]:
-    """`compare`, whose iterator gives the outcome itself, and `truth`, which gives its truth.
+    """`compare`, whose iterator gives the outcome, and `truth`, whose iterator gives its truth.
 
-    Where the program asks for nothing but the truth of a comparison, and asks once, ``truth``
-    asks, in C, so that the report knows it.
+    Where the program tests the truth of a comparison once and uses nothing else, ``truth`` tests it
+    in C, so that the report knows it.
     """
     lazy = _LAZY_OPERATIONS[operation]
     later = _later(reported)
@@ -242,7 +238,7 @@ def _comparer(
 
 
 def _later(reported: tuple[Reported, ...]) -> Function:
-    """Reports a comparison after its outcome, and returns the outcome."""
+    """The function that reports a comparison after its outcome, and returns the outcome."""
     log = logger(reported)
 
     def later(a: object, b: object, outcome: object) -> Iterator[Any]:
@@ -260,12 +256,12 @@ def _later(reported: tuple[Reported, ...]) -> Function:
 
 
 def _at_once(operation: str, reported: tuple[Reported, ...]) -> Callable[[Function], Function]:
-    """What puts the shortest way before ``compare``: both are int, float or bool, and one key."""
+    """Puts a shortcut before ``compare``, for one key and two operands of int, float or bool."""
     if operation not in _PLAIN_OPERATIONS or len(reported) != 1:
-        # `in` has no numbers on its right.
+        # The right operand of `in` is not a number.
         return lambda slowly: slowly
     plain = _PLAIN_OPERATIONS[operation]
-    numbers = _NUMBERS
+    numbers = NUMBERS
     log = logger(reported)
     (one,) = reported
     swapped = one.swapped
@@ -282,7 +278,7 @@ def _at_once(operation: str, reported: tuple[Reported, ...]) -> Callable[[Functi
                     else:
                         _take(one, outcome, a + 0.0, b + 0.0, outcome)
                 except OverflowError:
-                    # An integer that is no double.
+                    # An integer too large for a double.
                     log(a, b, outcome)
                 except Exception as error:
                     if is_programs(error):
@@ -297,10 +293,10 @@ def _at_once(operation: str, reported: tuple[Reported, ...]) -> Callable[[Functi
 
 
 def _linker(operation: str, reported: tuple[Reported, ...], held: Held) -> Function:
-    """`link`: a link of a chain that others follow. Its iterator gives the truth.
+    """`link`: a link of a chain with others behind it. Its iterator gives the truth.
 
-    It hands the right operand on to the next link, which asks for it by `Comparison.right`, or,
-    where the chain ends, its own outcome, by `Comparison.outcome`. One of the two follows at once.
+    It keeps the right operand for the next link, which gets it from `ComparisonSite.right`. Where
+    the chain ends it keeps its outcome, which the program gets from `ComparisonSite.outcome`.
     """
     lazy = _LAZY_OPERATIONS[operation]
     log = logger(reported)
@@ -321,15 +317,14 @@ def _linker(operation: str, reported: tuple[Reported, ...], held: Held) -> Funct
 
 
 class FlagSite(Site):
-    """A parameter that is a condition by itself.
+    """A parameter that is a condition itself.
 
-    `truth` where the program asks for the truth alone; `value` where it takes the value itself.
+    `truth` is for a program that only tests it, `value` for one that keeps the value.
     """
 
     __slots__ = ("truth", "value")
 
     def __init__(self, reported: tuple[Reported, ...]) -> None:
-        """All keys of the place."""
         log = logger(reported)
 
         def later(value: object, truth: bool) -> Iterator[bool]:
@@ -354,4 +349,3 @@ class FlagSite(Site):
             return repeat(value)
 
         self.offer(truth=truth, value=value)
-        keep(self)

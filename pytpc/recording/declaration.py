@@ -1,4 +1,4 @@
-"""A declaration of a parameter, made from one of dynamic_reconfigure."""
+"""Declarations of parameters, as dynamic_reconfigure makes them."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ class Declared:
     """One declaration.
 
     ``type`` is ``bool``, ``int``, ``double`` or ``str``; ``choices`` are the values of an
-    enumeration with their names. ``place`` is ``file:line``, or the topic that said so. ``package``
-    is the folder of the package whose file declares it; empty where a node published it.
+    enumeration with their names. ``place`` is ``file:line`` or a topic. ``package`` is the folder
+    of the package whose file declares the parameter; empty if a node published it.
     """
 
     parameter: str
@@ -72,7 +72,7 @@ def make_declared(
 
 
 def _end(value: object, type_: str) -> Number | None:
-    """The end of a range; those of the type itself say nothing."""
+    """The end of a range; None if it is only the limit of the type."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
         return None
     return None if type_ == "int" and value in _INT_ENDS else value

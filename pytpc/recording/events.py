@@ -1,39 +1,18 @@
-"""Evaluations of threshold predicate comparisons as columns: in numpy, Arrow and Parquet.
-
-``Events`` is one table sorted by time; ``EventBuilder`` makes it from records one at a time,
-``read_parquet`` and ``write_parquet`` keep it on disk. The columns are those of
-docs/reference/formats.md#events.
-"""
+"""Evaluations of threshold predicate comparisons as columns (docs/reference/formats.md#events)."""
 
 from __future__ import annotations
 
-from array import array
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-import pyarrow as pa
 
 from pytpc.base import columns as tables
-from pytpc.base.columns import Bools, Floats, Int32s, Int64s, frozen, sorted_words
+from pytpc.base.columns import Bools, Floats, Int32s, Int64s, frozen
 
-__all__ = ["SCHEMA", "Bools", "EventBuilder", "Events", "Floats", "Int32s", "Int64s", "KeyIndex"]
-__all__ += ["Report", "concat", "read_parquet", "write_parquet"]
-
-SCHEMA = pa.schema(
-    [
-        pa.field("time_ns", pa.int64(), nullable=False),
-        pa.field("key", tables.WORDS, nullable=False),
-        pa.field("result", pa.bool_(), nullable=False),
-        pa.field("cmp", pa.float64(), nullable=False),
-        pa.field("thresh", pa.float64(), nullable=False),
-        pa.field("res", pa.bool_(), nullable=False),
-        pa.field("node", tables.WORDS, nullable=False),
-    ]
-)
-"""docs/reference/formats.md#events. A Parquet file with other columns or types is refused."""
+__all__ = ["Bools", "Events", "Floats", "Int32s", "Int64s", "KeyIndex", "Report"]
 
 
 class Report(NamedTuple):
@@ -81,7 +60,6 @@ class Events(tables.WordTable):
     keys: tuple[str, ...]
     nodes: tuple[str, ...]
 
-    schema = SCHEMA
     order = "time_ns"
     what = "events"
 
@@ -133,51 +111,3 @@ class Events(tables.WordTable):
         columns = {name: column[kept] for name, column in self.columns().items()}
         columns["key"] = codes[kept]
         return Events.of(**columns, keys=keys, nodes=self.nodes)
-
-
-class EventBuilder:
-    """Collects evaluations one at a time; 38 bytes each until ``build``."""
-
-    def __init__(self) -> None:
-        """Start with none."""
-        self._times = array("q")
-        self._keys = array("i")
-        self._results = array("b")
-        self._cmps = array("d")
-        self._threshs = array("d")
-        self._ress = array("b")
-        self._nodes = array("i")
-        self._key_codes: dict[str, int] = {}
-        self._node_codes: dict[str, int] = {}
-
-    def add(self, time_ns: int, node: str, report: Report) -> None:
-        """Add one evaluation; the order of equal times is the order of the calls."""
-        key, result, cmp, thresh, res = report
-        self._times.append(time_ns)
-        self._keys.append(self._key_codes.setdefault(key, len(self._key_codes)))
-        self._results.append(result)
-        self._cmps.append(cmp)
-        self._threshs.append(thresh)
-        self._ress.append(res)
-        self._nodes.append(self._node_codes.setdefault(node, len(self._node_codes)))
-
-    def build(self) -> Events:
-        """The table; its keys and nodes are sorted, so that they depend on nothing else."""
-        keys, key_places = sorted_words(self._key_codes)
-        nodes, node_places = sorted_words(self._node_codes)
-        return Events.of(
-            time_ns=np.array(self._times, dtype=np.int64),
-            key=key_places[np.array(self._keys, dtype=np.int32)],
-            result=np.array(self._results, dtype=np.bool_),
-            cmp=np.array(self._cmps, dtype=np.float64),
-            thresh=np.array(self._threshs, dtype=np.float64),
-            res=np.array(self._ress, dtype=np.bool_),
-            node=node_places[np.array(self._nodes, dtype=np.int32)],
-            keys=keys,
-            nodes=nodes,
-        )
-
-
-concat = Events.concat
-read_parquet = Events.read
-write_parquet = Events.write

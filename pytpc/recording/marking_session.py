@@ -1,7 +1,7 @@
 """A session in which an observer sets marks: keys and times in, marks and lines of text out.
 
-Nothing here touches a terminal, a clock, a file or a graph; those are in ``marking_terminal``,
-``marking_file`` and ``marking_graph``.
+Nothing here touches a terminal, a clock, a file or a graph: ``present.marking_terminal``,
+``recording.marks_file`` and ``ros.marking`` do.
 """
 
 from __future__ import annotations
@@ -28,14 +28,15 @@ _STEPS_NS = {"left": -5, "right": 5, "down": -60, "up": 60, ",": -1, ".": 1}
 
 
 class MarkChange(NamedTuple):
-    """What a key did to the marks: one was made (``before`` is None), taken back (``after`` is
-    None) or got a note."""
+    """What a key did to the marks: it made one (``before`` is None), undid one (``after`` is None)
+    or gave one a note.
+    """
 
     before: Mark | None
     after: Mark | None
 
     def apply(self, marks: Sequence[Mark]) -> tuple[Mark, ...]:
-        """``marks`` with the change; a note brings its mark with it where that is gone."""
+        """``marks`` with the change; a note restores its mark if that is gone."""
         result = list(marks)
         if self.before in result:
             place = len(result) - 1 - result[::-1].index(self.before)
@@ -49,9 +50,9 @@ class MarkChange(NamedTuple):
 class Session:
     """One observer's marks, in the order in which they were made.
 
-    ``typing`` is the note that is being written, None where none is. ``said`` is what is to be told
-    the observer, empty where nothing. ``used`` are the times that were marked, and may be so no
-    more though the mark was taken back.
+    ``typing`` is the note that is being written, or None. ``said`` is a message for the observer,
+    or empty. ``used`` are all times that were marked: none is used again, even if its mark was
+    undone.
     """
 
     observer: str
@@ -101,8 +102,8 @@ def _mark(
 ) -> tuple[Session, MarkChange | None]:
     if now_ns is None:
         return replace(session, said="not marked: the graph has no time yet (no /clock)"), None
-    # While a clock stands still two marks would have one time, and what is taken back or noted is
-    # told by its time.
+    # While a clock stands still two marks would get one time, but undo and notes find a mark by its
+    # time.
     used = session.used | {mark.time_ns for mark in session.marks}
     while now_ns in used:
         now_ns += 1
@@ -220,7 +221,7 @@ def _line(mark: Mark, view: View) -> str:
 
 
 def folded(line: str, width: int) -> list[str]:
-    """The line in pieces that fit, what belongs together if possible in one piece."""
+    """The line in pieces that fit; words that belong together stay in one piece if possible."""
     parts = textwrap.wrap(line, max(1, width), subsequent_indent="  " if width > 10 else "")
     return [cut(part.replace(_NO_BREAK, " "), width) for part in parts or [""]]
 

@@ -56,8 +56,8 @@ def topic_of_marks(topic: str) -> tuple[MarkType | None, str] | None:
     ``/mark_action`` -> ``("I", "")``, ``/marks0/mark_no_action`` -> ``("II", "marks0")``,
     ``/mark_wrong`` -> ``(None, "")``.
     """
-    observer, _, last = topic.rpartition("/")
-    return (_TOPICS[last], observer.strip("/")) if last in _TOPICS else None
+    observer, last = _split(topic)
+    return (_TOPICS[last], observer) if last in _TOPICS else None
 
 
 def topic_for(mark: Mark) -> str:
@@ -71,22 +71,6 @@ def topic_of_observer(observer: str, last: str) -> str:
     return f"/{observer}/{last}" if observer else f"/{last}"
 
 
-def observer_of(topic: str, last: str) -> str | None:
-    """The observer whose topic ``last`` (``UNDO_TOPIC``, ``NOTE_TOPIC``) this is, or None."""
-    observer, _, name = topic.rpartition("/")
-    return observer.strip("/") if name == last else None
-
-
-def without_undone(marks: Iterable[Mark], undone: Iterable[tuple[str, int]]) -> tuple[Mark, ...]:
-    """``marks`` without those that were taken back, in their order.
-
-    ``undone`` has observer and time of each mark that was. All of that observer at exactly that
-    time go: an observer marks no time twice, so they are the same one, recorded twice.
-    """
-    gone = set(undone)
-    return tuple(mark for mark in marks if (mark.observer, mark.time_ns) not in gone)
-
-
 def joined(marks: Iterable[Mark]) -> tuple[Mark, ...]:
     """``marks`` sorted, each once; of two that differ in their notes alone, the one with a note."""
     found: dict[tuple[int, str, str], Mark] = {}
@@ -95,14 +79,6 @@ def joined(marks: Iterable[Mark]) -> tuple[Mark, ...]:
         if before is None or mark.note > before.note:
             found[mark.order()] = mark
     return tuple(sorted(found.values(), key=Mark.order))
-
-
-def with_note(marks: Iterable[Mark], observer: str, time_ns: int, note: str) -> tuple[Mark, ...]:
-    """``marks`` with ``note`` at those of ``observer`` at that time."""
-    return tuple(
-        replace(mark, note=note) if (mark.observer, mark.time_ns) == (observer, time_ns) else mark
-        for mark in marks
-    )
 
 
 def note_text(time_ns: int, note: str) -> str:
@@ -123,32 +99,34 @@ def parse_note(text: str) -> tuple[int, str] | None:
 
 
 class MarkMessages:
-    """Gathers the marks of a graph from the messages of all their topics, in any order."""
+    """Gathers the marks of a graph from the messages of all their topics, in any order.
+
+    An observer marks no time twice, so an observer and a time name one mark.
+    """
 
     def __init__(self) -> None:
-        """No message yet."""
         self._marks: list[Mark] = []
-        self._undone: list[tuple[str, int]] = []
-        self._notes: list[tuple[str, int, str]] = []
+        self._undone: set[tuple[str, int]] = set()
+        self._notes: dict[tuple[str, int], str] = {}
 
     @staticmethod
     def message_type(topic: str) -> Literal["Time", "String"] | None:
-        """The type, of std_msgs, of a topic's messages; None if the topic is not about marks."""
-        last = topic.rpartition("/")[2]
+        """The std_msgs type of a topic's messages; None if the topic is not about marks."""
+        _, last = _split(topic)
         if last == NOTE_TOPIC:
             return "String"
         return "Time" if last in {*_TOPICS, UNDO_TOPIC} else None
 
     def add_time(self, topic: str, time_ns: int) -> None:
-        """A std_msgs/Time of a topic that ``message_type`` knows."""
-        named = topic_of_marks(topic)
-        if named is not None:
-            self._marks.append(Mark(time_ns, *named))
+        """Take in a std_msgs/Time of a topic that ``message_type`` knows."""
+        observer, last = _split(topic)
+        if last == UNDO_TOPIC:
+            self._undone.add((observer, time_ns))
         else:
-            self._undone.append((observer_of(topic, UNDO_TOPIC) or "", time_ns))
+            self._marks.append(Mark(time_ns, _TOPICS[last], observer))
 
     def add_text(self, topic: str, text: str) -> None:
-        """A std_msgs/String likewise.
+        """Take in a std_msgs/String of such a topic.
 
         Raises:
             ValueError: it is no note.
@@ -156,14 +134,22 @@ class MarkMessages:
         found = parse_note(text)
         if found is None:
             raise ValueError("not a note: expected SECONDS.NANOSECONDS,NOTE")
-        self._notes.append((observer_of(topic, NOTE_TOPIC) or "", *found))
+        time_ns, note = found
+        self._notes[_split(topic)[0], time_ns] = note
 
     def marks(self) -> tuple[Mark, ...]:
         """The marks that were not undone, with their last notes, sorted."""
-        marks = without_undone(sorted(self._marks, key=Mark.order), self._undone)
-        for note in self._notes:
-            marks = with_note(marks, *note)
-        return marks
+        kept = [mark for mark in self._marks if (mark.observer, mark.time_ns) not in self._undone]
+        noted = [
+            replace(mark, note=self._notes.get((mark.observer, mark.time_ns), "")) for mark in kept
+        ]
+        return tuple(sorted(noted, key=Mark.order))
+
+
+def _split(topic: str) -> tuple[str, str]:
+    """The observer of a topic, and the topic's last part."""
+    observer, _, last = topic.rpartition("/")
+    return observer.strip("/"), last
 
 
 def marks_beside(recording: Path) -> Path:
@@ -220,8 +206,8 @@ def _mark(row: list[str]) -> Mark:
     if len(row) > len(_HEADER):
         raise ValueError(f"{len(row)} columns, not {len(_HEADER)}")
     if not (time.isascii() and time.isdigit() and len(time) < 20) or int(time) >= 2**63:
-        raise ValueError(f"{time!r} is no time in nanoseconds")
+        raise ValueError(f"{time!r} is not a time in nanoseconds")
     if kind and kind not in MARK_TYPES:
-        raise ValueError(f"{kind!r} is no type of mark: I, II or nothing")
+        raise ValueError(f"{kind!r} is not a type of mark (I, II or nothing)")
     mark_type = next((known for known in MARK_TYPES if known == kind), None)
     return Mark(int(time), mark_type, observer, note)

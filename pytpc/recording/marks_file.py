@@ -14,10 +14,10 @@ from pytpc.recording.marks import Mark, read_marks, write_marks
 
 
 class MarksFile:
-    """A file that several observers may write at once; each applies only its own changes.
+    """A file that several observers may write at once. Each applies only its own changes.
 
-    What cannot be written (a full disk) is kept, and tried again with the next change and at the
-    end.
+    A change that cannot be written (full disk) is kept, and tried again with the next one and at
+    the end.
     """
 
     def __init__(self, path: Path) -> None:
@@ -41,7 +41,7 @@ class MarksFile:
         self.pending.append(change)
 
     def flush(self) -> str:
-        """Write what is not written yet; what is wrong in one line, empty where nothing is.
+        """Write all pending changes; return what is wrong in one line, or an empty text.
 
         ``fault`` is what was wrong last.
         """

@@ -11,17 +11,18 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 from pytpc.base.atomic import write_atomic
+from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError
-from pytpc.recording.events import Events, read_parquet, write_parquet
+from pytpc.recording.events import Events
 from pytpc.recording.marks import MARK_TYPES, Mark
-from pytpc.recording.summaries import Summaries, read_summaries, write_summaries
+from pytpc.recording.summaries import Summaries
 
 EVENTS_FILE = "events.parquet"
 SUMMARIES_FILE = "summaries.parquet"
 MARKS_FILE = "marks.json"
 RUN_FILE = "run.json"
 REPORTS_FOLDER = "tpc"
-"""In the folder of a recorded mission: what tells it, and where its nodes' files are."""
+"""A folder with this file is a recorded mission, and has its nodes' files in this folder."""
 _SCHEMA = 1
 
 
@@ -39,9 +40,9 @@ class MalformedRecord:
 class Dropped:
     """Reports that the instrumented process dropped, and why.
 
-    ``key`` is empty where it is not known of which comparison; ``flops`` of the ``count`` were
-    flops; ``why`` is ``site`` or ``process`` (a cap on reports per second), ``nested`` (made while
-    another report was) or ``stopped`` (the sink could not go on).
+    ``key`` is empty if the comparison is not known; ``flops`` of the ``count`` were flops; ``why``
+    is ``site`` or ``process`` (a cap on reports per second), ``nested`` (made while another report
+    was) or ``stopped`` (the sink could not go on).
     """
 
     key: str
@@ -91,14 +92,14 @@ def save_recording(recording: Recording, folder: Path) -> None:
     Raises:
         TpcError: a file cannot be written.
     """
-    write_parquet(recording.events, folder / EVENTS_FILE)
+    recording.events.write(folder / EVENTS_FILE)
     if len(recording.summaries):
-        write_summaries(recording.summaries, folder / SUMMARIES_FILE)
-    write_marks(recording, folder, len(recording.events), len(recording.summaries))
+        recording.summaries.write(folder / SUMMARIES_FILE)
+    write_marks_json(recording, folder, len(recording.events), len(recording.summaries))
 
 
-def write_marks(recording: Recording, folder: Path, events: int, summaries: int) -> None:
-    """Write ``marks.json`` beside tables of so many rows; a file of summaries of before is deleted.
+def write_marks_json(recording: Recording, folder: Path, events: int, summaries: int) -> None:
+    """Write ``marks.json`` for tables of this many rows, and delete a leftover file of summaries.
 
     Raises:
         TpcError: the file cannot be written.
@@ -129,49 +130,41 @@ def load_recording(folder: Path) -> Recording:
     Raises:
         InputError: a file is missing or broken, or the files are not of one recording.
     """
-    recording, event_count, summary_count = read_marks(folder)
-    path = folder / MARKS_FILE
-    events = read_parquet(folder / EVENTS_FILE)
-    _check_rows(path, event_count, EVENTS_FILE, len(events))
-    # A file of summaries that nothing tells of was left there.
-    summaries = read_summaries(folder / SUMMARIES_FILE) if summary_count else Summaries.empty()
-    _check_rows(path, summary_count, SUMMARIES_FILE, len(summaries))
+    recording, event_count, summary_count = read_marks_json(folder)
+    events = Events.read(folder / EVENTS_FILE)
+    check_rows(folder, EVENTS_FILE, event_count, len(events))
+    # Without a count in marks.json, a file of summaries is a leftover.
+    summaries = Summaries.read(folder / SUMMARIES_FILE) if summary_count else Summaries.empty()
+    check_rows(folder, SUMMARIES_FILE, summary_count, len(summaries))
     return replace(recording, events=events, summaries=summaries)
 
 
-def read_marks(folder: Path) -> tuple[Recording, int, int]:
+def read_marks_json(folder: Path) -> tuple[Recording, int, int]:
     """Read only ``marks.json``: a recording with empty tables, and their number of rows on disk.
 
     Raises:
         InputError: the file is missing or broken.
     """
     path = folder / MARKS_FILE
+    document = parse_json(path, half_characters=True)
     try:
-        text = path.read_bytes().decode("utf-8")
-        document = json.loads(text)
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror or error}", path) from error
-    except json.JSONDecodeError as error:
-        raise InputError(f"not JSON: {error.msg}", path, error.lineno) from error
-    except UnicodeDecodeError as error:
-        raise InputError(f"not JSON: byte {error.start} is not UTF-8", path) from error
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"not JSON: {error}", path) from error
-    try:
-        # Files of older versions say nothing of summaries.
-        counts = int(document["events"]), int(document.get("summaries", 0))
-        return _recording(document), *counts
+        return _recording(document)
     except (AttributeError, KeyError, TypeError, ValueError, OverflowError) as error:
         raise InputError(f"not the marks of a recording: {_why(error)}", path) from error
 
 
-def _check_rows(path: Path, said: int, name: str, found: int) -> None:
+def check_rows(folder: Path, name: str, said: int, found: int) -> None:
+    """Check that the table ``name`` has as many rows as ``marks.json`` says.
+
+    Raises:
+        InputError: it has not.
+    """
     if said != found:
-        what = name.removesuffix(".parquet")
-        raise InputError(f"is of a recording with {said} {what}, but {name} has {found}", path)
+        what = f"{said} {name.removesuffix('.parquet')}, but {name} has {found}"
+        raise InputError(f"is of a recording with {what}", folder / MARKS_FILE)
 
 
-def _recording(document: object) -> Recording:
+def _recording(document: object) -> tuple[Recording, int, int]:
     if not isinstance(document, dict) or document.get("schema") != _SCHEMA:
         raise ValueError(f"not of format {_SCHEMA}, the only one that this TPC reads")
     marks = [Mark(**mark) for mark in document["marks"]]
@@ -179,10 +172,10 @@ def _recording(document: object) -> Recording:
         if type(mark.time_ns) is not int or not isinstance(mark.observer, str):
             raise ValueError("a mark without a time in ns or an observer")
         if not isinstance(mark.note, str):
-            raise ValueError("a mark whose note is no text")
+            raise ValueError("a mark whose note is not text")
         if mark.type is not None and mark.type not in MARK_TYPES:
             raise ValueError(f"a mark of type {mark.type!r}")
-    return Recording(
+    recording = Recording(
         name=str(document["name"]),
         events=Events.empty(),
         marks=tuple(sorted(marks, key=Mark.order)),
@@ -194,6 +187,8 @@ def _recording(document: object) -> Recording:
         notes=tuple(str(note) for note in document["notes"]),
         dropped=tuple(Dropped(**item) for item in document.get("dropped", [])),
     )
+    # Files of older versions say nothing of summaries.
+    return recording, int(document["events"]), int(document.get("summaries", 0))
 
 
 def _why(error: Exception) -> str:

@@ -6,29 +6,10 @@ evaluations, those too, are in the summaries. The columns are those of docs/refe
 
 from __future__ import annotations
 
-from array import array
 from dataclasses import dataclass
-from typing import Any
-
-import numpy as np
-import pyarrow as pa
 
 from pytpc.base import columns as tables
-from pytpc.base.columns import Bools, Floats, Int32s, Int64s, sorted_words
-
-_INTEGERS = ("begin_ns", "end_ns", "count", "flops", "far", "odd")
-_BOOLS = ("result", "res")
-_FLOATS = ("cmp", "thresh", "diff_min", "diff_max", "diff_mean", "abs_mean", "low", "high")
-
-SCHEMA = pa.schema(
-    [
-        pa.field("key", tables.WORDS, nullable=False),
-        pa.field("node", tables.WORDS, nullable=False),
-        *(pa.field(name, pa.int64(), nullable=False) for name in _INTEGERS),
-        *(pa.field(name, pa.bool_(), nullable=False) for name in _BOOLS),
-        *(pa.field(name, pa.float64(), nullable=False) for name in _FLOATS),
-    ]
-)
+from pytpc.base.columns import Bools, Floats, Int32s, Int64s
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,9 +18,9 @@ class Summary:
 
     ``begin_ns`` and ``end_ns`` enclose them; ``result``, ``res``, ``cmp`` and ``thresh`` are those
     of the last. ``count``, ``flops`` and ``odd`` count all of them, the flops, and those whose cmp
-    or thresh is not finite. The rest is about the others alone, NaN where there are none: diff is
-    cmp - thresh, ``abs_mean`` the mean of its absolute value, ``far`` counts those where that is
-    above 1e-4, ``low`` and ``high`` are the extremes of all cmp and thresh.
+    or thresh is not finite. The rest describes only the finite ones, and is NaN where there are
+    none: diff is cmp - thresh, ``abs_mean`` the mean of its absolute value, ``far`` counts those
+    where that is above 1e-4, ``low`` and ``high`` are the extremes of all cmp and thresh.
     """
 
     key: str
@@ -67,7 +48,7 @@ class Summaries(tables.WordTable):
     """n summaries, sorted by ``begin_ns``; equal ones keep their recorded order.
 
     ``key`` and ``node`` are int32[n], codes into ``keys`` and ``nodes``; the other columns are
-    int64, bool or float64[n] as ``SCHEMA`` has them, and mean what ``Summary`` says. The arrays
+    int64, bool or float64[n] by their types, and mean what ``Summary`` says. The arrays
     are read-only. Make one with ``of``, which sorts and checks.
     """
 
@@ -92,45 +73,5 @@ class Summaries(tables.WordTable):
     keys: tuple[str, ...]
     nodes: tuple[str, ...]
 
-    schema = SCHEMA
     order = "begin_ns"
     what = "summaries"
-
-
-class SummaryBuilder:
-    """Collects summaries one at a time."""
-
-    def __init__(self) -> None:
-        """Start with none."""
-        self._columns: dict[str, array[Any]] = {
-            name: array("d" if name in _FLOATS else "b" if name in _BOOLS else "q")
-            for name in SCHEMA.names
-        }
-        self._keys: dict[str, int] = {}
-        self._nodes: dict[str, int] = {}
-
-    def __len__(self) -> int:
-        """How many were added."""
-        return len(self._columns["begin_ns"])
-
-    def add(self, summary: Summary) -> None:
-        """Add one; those that begin at the same time keep the order of the calls."""
-        key = self._keys.setdefault(summary.key, len(self._keys))
-        node = self._nodes.setdefault(summary.node, len(self._nodes))
-        for name, column in self._columns.items():
-            column.append(
-                key if name == "key" else node if name == "node" else getattr(summary, name)
-            )
-
-    def build(self) -> Summaries:
-        """The table; its keys and nodes are sorted, so that they depend on nothing else."""
-        keys, key_places = sorted_words(self._keys)
-        nodes, node_places = sorted_words(self._nodes)
-        columns = {name: np.array(column) for name, column in self._columns.items()}
-        columns["key"] = key_places[columns["key"].astype(np.int64)]
-        columns["node"] = node_places[columns["node"].astype(np.int64)]
-        return Summaries.of(**columns, keys=keys, nodes=nodes)
-
-
-read_summaries = Summaries.read
-write_summaries = Summaries.write

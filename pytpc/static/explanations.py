@@ -1,26 +1,26 @@
 """Explains from the static information why a comparison was found, and others were not.
 
-``look_up`` takes what a user has at hand (a key, a parameter's name, ``FILE:LINE``) and gives all
-that the static information says about it, as data; ``pytpc explain`` prints it.
+``look_up`` takes a key, a parameter's name or ``FILE:LINE``, and returns all that the static
+information says about it. ``pytpc explain`` prints that.
 """
 
 from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from pytpc.base.errors import InputError
-from pytpc.static.static_info import (
+from pytpc.static.link_unit import (
     BlindSpot,
     Comparison,
     LinkUnit,
     NotExposed,
     ParameterRead,
     PathStep,
-    StaticInfo,
 )
+from pytpc.static.static_info import StaticInfo
 
 _CLOSEST = 5
 _FILE_LINE = re.compile(r"(?P<file>[^:]+):(?P<line>[0-9]{1,9})(:[0-9]+)?")
@@ -39,9 +39,9 @@ class FoundComparison:
 class Explanation:
     """Everything known about a key, a parameter or a line.
 
-    ``comparisons`` are the nearest to their exposing statements first. The others are the reads,
-    the comparisons on which nothing exposed depends, and the blind spots of the same parameter or
-    line, each with its unit.
+    ``comparisons`` begin with the nearest to its exposing statement. The others are the reads, the
+    comparisons on which nothing exposed depends, and the blind spots of the same parameter or line,
+    each with its unit.
     """
 
     question: str
@@ -55,8 +55,8 @@ def look_up(static: StaticInfo, question: str) -> Explanation:
     """What ``static`` says about a key (or its beginning), a parameter or ``FILE:LINE``.
 
     Raises:
-        InputError: nothing is called so; the message has the parameters with the closest names, or
-            the lines of the file that are known.
+        InputError: nothing has this name; the message lists the parameters with the closest names,
+            or the known lines of the file.
     """
     place = _FILE_LINE.fullmatch(question)
     if place is not None:
@@ -64,7 +64,7 @@ def look_up(static: StaticInfo, question: str) -> Explanation:
     if _KEY.fullmatch(question):
         by_key = [found for found in _all(static) if found.comparison.key.startswith(question)]
         if by_key:
-            return Explanation(question, _sorted(by_key))
+            return _explained(static, question, by_key, lambda _: False)
     return _of_parameter(static, question)
 
 
@@ -72,36 +72,38 @@ def _all(static: StaticInfo) -> Iterator[FoundComparison]:
     return (FoundComparison(unit, found) for unit in static.units for found in unit.comparisons)
 
 
-def _sorted(found: Iterable[FoundComparison]) -> tuple[FoundComparison, ...]:
-    return tuple(sorted(found, key=lambda each: each.comparison.distance))
-
-
 def _of_parameter(static: StaticInfo, name: str) -> Explanation:
-    explanation = Explanation(
-        question=name,
-        comparisons=_sorted(each for each in _all(static) if _same(each.comparison.source, name)),
-        reads=tuple(
-            (unit, read)
-            for unit in static.units
-            for read in unit.parameters
-            if _same(read.name, name)
-        ),
-        not_exposed=tuple(
-            (unit, found)
-            for unit in static.units
-            for found in unit.not_exposed
-            if _same(found.source, name)
-        ),
-        blind_spots=tuple(
-            (unit, spot)
-            for unit in static.units
-            for spot in unit.blind_spots
-            if _same(spot.parameter, name)
-        ),
+    explanation = _explained(
+        static,
+        name,
+        (each for each in _all(static) if _same(each.comparison.source, name)),
+        lambda found: _same(_parameter(found), name),
     )
     if not explanation.reads and not explanation.comparisons:
         raise InputError(_nothing_like(static, name))
     return explanation
+
+
+def _explained(
+    static: StaticInfo,
+    question: str,
+    comparisons: Iterable[FoundComparison],
+    is_asked: Callable[[ParameterRead | NotExposed | BlindSpot], bool],
+) -> Explanation:
+    units = static.units
+    return Explanation(
+        question,
+        tuple(sorted(comparisons, key=lambda each: each.comparison.distance)),
+        reads=tuple((unit, of) for unit in units for of in unit.parameters if is_asked(of)),
+        not_exposed=tuple((unit, of) for unit in units for of in unit.not_exposed if is_asked(of)),
+        blind_spots=tuple((unit, of) for unit in units for of in unit.blind_spots if is_asked(of)),
+    )
+
+
+def _parameter(found: ParameterRead | NotExposed | BlindSpot) -> str | None:
+    if isinstance(found, ParameterRead):
+        return found.name
+    return found.source if isinstance(found, NotExposed) else found.parameter
 
 
 def _same(name: str | None, asked: str) -> bool:
@@ -124,23 +126,10 @@ def _at(static: StaticInfo, question: str, file: str, line: int) -> Explanation:
     def here(place: Comparison | ParameterRead | NotExposed | BlindSpot | PathStep) -> bool:
         return place.lineno == line and same_file(place.file, file)
 
-    own = [each for each in _all(static) if here(each.comparison)]
-    explanation = Explanation(
-        question=question,
-        comparisons=_sorted(own or (e for e in _all(static) if any(map(here, e.comparison.path)))),
-        reads=tuple(
-            (unit, read) for unit in static.units for read in unit.parameters if here(read)
-        ),
-        not_exposed=tuple(
-            (unit, found) for unit in static.units for found in unit.not_exposed if here(found)
-        ),
-        blind_spots=tuple(
-            (unit, spot) for unit in static.units for spot in unit.blind_spots if here(spot)
-        ),
-    )
-    if not (explanation.comparisons or explanation.reads or explanation.not_exposed) and not (
-        explanation.blind_spots
-    ):
+    found = [each for each in _all(static) if here(each.comparison)]
+    found = found or [each for each in _all(static) if any(map(here, each.comparison.path))]
+    explanation = _explained(static, question, found, here)
+    if not any((found, explanation.reads, explanation.not_exposed, explanation.blind_spots)):
         raise InputError(_nothing_at(static, file, line))
     return explanation
 
@@ -164,12 +153,12 @@ def _nothing_at(static: StaticInfo, file: str, line: int) -> str:
 
 
 def where(place: Comparison | ParameterRead | NotExposed | BlindSpot | PathStep) -> str:
-    """``FILE:LINE``, or that it is not known."""
+    """``FILE:LINE``, or a text saying that it is unknown."""
     return f"{place.file}:{place.lineno}" if place.file else "a place that is not known"
 
 
 def why_no_comparison(explanation: Explanation) -> list[str]:
-    """For a parameter without a reported comparison: what became of its value, once each."""
+    """Why a parameter has no reported comparison: what became of its value, each reason once."""
     if explanation.comparisons:
         return []
     reasons = [

@@ -33,7 +33,7 @@ class Transform:
     """How a derived threshold is computed from its parameter.
 
     ``affine``: threshold = scale * parameter + offset. ``expression``: ``tree`` says it (see
-    ``pytpc.static.arithmetic``; None in files of before), and ``scale`` and ``offset`` are None.
+    ``pytpc.static.arithmetic``; None in older files), and ``scale`` and ``offset`` are None.
     """
 
     kind: Literal["affine", "expression"]
@@ -42,18 +42,16 @@ class Transform:
     text: str = ""
     tree: Tree | None = None
 
-    def to_json(self) -> dict[str, object]:
+    def to_json(self) -> dict[str, Any]:
         """The fields that its kind has."""
-        if self.kind == "affine":
-            names = ["kind", "scale", "offset", "text"]
-        else:
-            names = ["kind", "text"] if self.tree is None else ["kind", "text", "tree"]
-        return {name: _plain(getattr(self, name)) for name in names}
+        return _object(self)
 
 
 @dataclass(frozen=True, slots=True)
 class ParameterRead:
-    """A call that reads a parameter; ``name`` has ``<dynamic>`` for a part that is no constant."""
+    """A call that reads a parameter; ``<dynamic>`` in ``name`` stands for a part that is not
+    constant.
+    """
 
     name: str
     api: str
@@ -117,7 +115,7 @@ class NotExposed:
 
 @dataclass(frozen=True, slots=True)
 class BlindSpot:
-    """A blind spot of the analysis; ``parameter`` is None if it concerns none in particular."""
+    """A blind spot of the analysis; ``parameter`` is None if it does not concern a certain one."""
 
     kind: str
     parameter: str | None
@@ -133,7 +131,7 @@ class BlindSpot:
 class Comparison:
     """One threshold predicate comparison (docs/reference/formats.md#a-comparison).
 
-    The last three are known of Python alone.
+    The last three are known for Python only.
     """
 
     key: str
@@ -162,7 +160,7 @@ class Comparison:
 
     def to_json(self) -> dict[str, Any]:
         """The comparison as JSON (docs/reference/formats.md#a-comparison)."""
-        return _without_unknown(_fields(self))
+        return _object(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,10 +200,10 @@ class Counts:
 class LinkUnit:
     """One executable or shared library as the analysis saw it.
 
-    ``status`` is ``failed``, ``failure`` says why and the lists are empty where the analysis or
-    the instrumentation broke down; such a unit runs as its author wrote it and reports nothing.
-    ``script`` is the script of a Python unit, relative to ``source_root``; None of all others.
-    ``build_folder`` is CMake's, absolute; None where the unit was not read from its place there.
+    If the analysis or the instrumentation failed, ``status`` is ``failed``, ``failure`` says why
+    and the lists are empty; such a unit runs as its author wrote it and reports nothing. ``script``
+    is the script of a Python unit, relative to ``source_root``; None for all others.
+    ``build_folder`` is CMake's, absolute; None if the unit was not read from there.
     """
 
     link_unit: str
@@ -225,7 +223,7 @@ class LinkUnit:
 
     @property
     def is_python(self) -> bool:
-        """Whether it is a script with its modules, and no target of CMake's."""
+        """Whether it is a Python script with its modules, not a CMake target."""
         return self.tool.analysis == "python"
 
     @property
@@ -235,7 +233,7 @@ class LinkUnit:
 
     def to_json(self) -> dict[str, Any]:
         """The unit as JSON (docs/reference/formats.md#static-information)."""
-        return _without_unknown({"schema": SCHEMA_VERSION, **_fields(self)})
+        return {"schema": SCHEMA_VERSION, **_object(self)}
 
     def absolute(self, file: str) -> str:
         """A ``file`` field of this unit as an absolute path without ``.`` and ``..``."""
@@ -286,28 +284,20 @@ def _comparison(data: dict[str, Any]) -> Comparison:
     return Comparison(**found)
 
 
-def _fields(value: DataclassInstance) -> dict[str, object]:
-    return {field.name: _plain(getattr(value, field.name)) for field in fields(value)}
+# Fields that only one half of TPC writes, or only one kind of transform has.
+_OPTIONAL = frozenset(
+    {"analysis", "end_lineno", "end_column", "operand", "script", "build_folder"}
+    | {"scale", "offset", "tree"}
+)
 
 
-_OPTIONAL = ("analysis", "end_lineno", "end_column", "operand", "script", "build_folder")
-
-
-def _without_unknown(found: dict[str, object]) -> dict[str, object]:
-    """Fields that only some files have, as those of one half of TPC, are left out by the others."""
-    return {
-        name: value for name, value in found.items() if name not in _OPTIONAL or value is not None
-    }
+def _object(value: DataclassInstance) -> dict[str, Any]:
+    """A dataclass as a JSON object, without optional fields that are not known."""
+    found = ((field.name, getattr(value, field.name)) for field in fields(value))
+    return {name: _plain(item) for name, item in found if item is not None or name not in _OPTIONAL}
 
 
 def _plain(value: object) -> object:
-    """Dataclasses as dicts and tuples as lists; of a transform what its kind has."""
-    if isinstance(value, Transform):
-        return value.to_json()
-    if isinstance(value, Tool | Comparison):
-        return _without_unknown(_fields(value))
-    if is_dataclass(value) and not isinstance(value, type):
-        return _fields(value)
     if isinstance(value, tuple):
         return [_plain(item) for item in value]
-    return value
+    return _object(value) if is_dataclass(value) and not isinstance(value, type) else value

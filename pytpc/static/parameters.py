@@ -11,11 +11,11 @@ DYNAMIC = "<dynamic>"
 
 
 def same_parameter(given: str, source: str) -> bool:
-    """True where ``given``, by a person, means the parameter that is ``source`` in the program.
+    """Whether the name ``given`` by a person means the parameter ``source`` of the program.
 
-    The namespace of the node is no part of what has to be given: ``limit``, ``~limit`` and
-    ``/node/limit`` all mean ``~limit``. A part that the analysis does not know may be anything; a
-    name of which it knows nothing is only itself.
+    The namespace of the node may be left out: ``limit``, ``~limit`` and ``/node/limit`` all mean
+    ``~limit``. A part that the analysis does not know matches anything; a name that is wholly
+    unknown matches only itself.
     """
     known = _relative(source.removeprefix(f"{DYNAMIC}/"))
     if given == source or DYNAMIC in (known, given):

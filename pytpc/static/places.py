@@ -29,9 +29,9 @@ class Tpc:
     """A comparison in the source.
 
     ``file`` is absolute, ``package`` the one in whose folder it is, ``place`` the file relative to
-    that folder (absolute where it is in none). ``parameter`` is None for a constant, whose variable
-    or number ``name`` is. ``keys`` begin with the nearest to its exposing statement, whose distance
-    ``distance`` is.
+    that folder (absolute where it is in none). For a constant ``parameter`` is None, and ``name``
+    is its variable or number. ``keys`` begin with the nearest to its exposing statement;
+    ``distance`` is its distance.
     """
 
     file: str
@@ -58,7 +58,8 @@ class Tpc:
 
     def to_json(self) -> dict[str, Any]:
         """The place as JSON (docs/reference/formats.md)."""
-        return {**asdict(self), "keys": [asdict(each) for each in self.keys]}
+        found = asdict(self)
+        return {**found, "keys": list(found["keys"])}
 
 
 Identity = tuple[str, int, int, str, str, str, str]
@@ -69,7 +70,7 @@ def merge_places(
 ) -> tuple[Tpc, ...]:
     """The TPCs of ``units``, sorted by package, file, line, column and parameter.
 
-    Two comparisons are one where file, line, column, parameter (of a constant its name), type and
+    Two comparisons are one if file, line, column, parameter (for a constant its name), type and
     relation are the same.
 
     Args:

@@ -27,8 +27,8 @@ ORDERS: dict[str, Callable[[Tpc], tuple[object, ...]]] = {
 class Selection:
     """A selection; an empty field selects everything.
 
-    ``packages``: the one in whose folder the source is, or whose program it is in. ``parameters``
-    and ``files`` may have wildcards; a name's namespace and a path's first folders may be left out.
+    ``packages`` own the source file, or a program that contains it. ``parameters`` and ``files``
+    may have wildcards; a name's namespace and a path's first folders may be left out.
     """
 
     packages: tuple[str, ...] = ()

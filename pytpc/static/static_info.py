@@ -28,46 +28,8 @@ from pytpc.base.checked_json import (
 )
 from pytpc.base.errors import InputError, WorkspaceError
 from pytpc.base.paths import MERGED_FILE, OWN_FOLDER
-from pytpc.static.link_unit import (
-    BlindSpot,
-    Comparison,
-    Counts,
-    Default,
-    Exposing,
-    LeftOut,
-    LinkUnit,
-    NotExposed,
-    ParameterRead,
-    PathStep,
-    Place,
-    Tool,
-    Transform,
-)
+from pytpc.static.link_unit import Comparison, LeftOut, LinkUnit
 from pytpc.static.places import Tpc, merge_places
-
-__all__ = [
-    "BlindSpot",
-    "Comparison",
-    "Counts",
-    "Default",
-    "Exposing",
-    "LeftOut",
-    "LinkUnit",
-    "NotExposed",
-    "ParameterRead",
-    "PathStep",
-    "Place",
-    "StaticInfo",
-    "Tool",
-    "Tpc",
-    "Transform",
-    "collect",
-    "is_python_file",
-    "load_link_unit",
-    "python_unit_file",
-    "read_static",
-    "unit_files",
-]
 
 
 @dataclass(frozen=True)
@@ -178,7 +140,7 @@ class StaticInfo:
     def from_json(cls, data: object, path: Path) -> StaticInfo:
         """The reverse of ``to_json``; ``path`` is for messages.
 
-        Documents of before have no ``copies``, ``tpcs`` and ``left_out``; the TPCs follow from the
+        Older documents have no ``copies``, ``tpcs`` and ``left_out``; the TPCs follow from the
         rest.
 
         Raises:
@@ -222,9 +184,9 @@ class StaticInfo:
 
 
 def _rooted(data: object, folder: Path) -> object:
-    """The document with sources that are given relative to its ``folder`` as absolute paths.
+    """The document with absolute paths of sources, where they were relative to its ``folder``.
 
-    Static information that is passed on together with the sources says so.
+    Static information that is passed on together with its sources has relative paths.
     """
     if not isinstance(data, dict) or not isinstance(data.get("units"), list):
         return data
@@ -290,7 +252,7 @@ def python_unit_file(build_folder: Path, link_unit: str) -> Path:
 
 
 def is_python_file(path: Path) -> bool:
-    """Whether a file of ``unit_files`` is a Python unit's."""
+    """Whether a file of ``unit_files`` is that of a Python unit."""
     return path.name.endswith(_PYTHON_END)
 
 

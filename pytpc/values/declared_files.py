@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
 
-from pytpc.ingest.declared_bag import is_bag, read_bag
+from pytpc.ingest.declared_bag import read_declared_bag
 from pytpc.recording.declaration import Declared
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.declared_cfg import read_cfg
@@ -62,7 +62,7 @@ def _read(path: Path) -> tuple[list[Declared], list[str]]:
         OSError: the file cannot be read.
     """
     if path.suffix == ".bag":
-        return read_bag(path) if is_bag(path) else ([], [])
+        return read_declared_bag(path)
     if path.stat().st_size > _LARGEST_FILE:
         return [], [f"{path}: too large"]
     text = path.read_bytes()

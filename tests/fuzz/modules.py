@@ -16,7 +16,7 @@ from pathlib import Path
 
 from fuzz.tools import BIN, LIT_INPUTS, ROOT, compile_unit, opt, run
 from pytpc.base.errors import InputError
-from pytpc.static.static_info import LinkUnit
+from pytpc.static.link_unit import LinkUnit
 
 HERE = Path(__file__).parent
 

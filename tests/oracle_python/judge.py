@@ -10,7 +10,7 @@ from oracle_python.instrument import Place
 from oracle_python.runner import Compiled, Outcome, Run
 from pytpc.python_analysis.analysis import analyse
 from pytpc.python_analysis.comparisons.gather import Found, span_of
-from pytpc.python_analysis.ir.program import Loader, Program
+from pytpc.python_analysis.ir.program import Program
 from pytpc.python_analysis.rules_file import load_rules
 from pytpc.python_analysis.sources.packages import entry_of
 
@@ -74,9 +74,8 @@ def _ask(verdict: Verdict, modules: Mapping[str, str], folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     for name, source in modules.items():
         (folder / f"{name}.py").write_text(source)
-    entry = entry_of(folder / "node.py")
-    program = Program(entry.name, entry.package, entry.root)
-    Loader(program, entry).load()
+    program = Program(entry_of(folder / "node.py"))
+    program.load()
     analysed = analyse(program, load_rules())
     verdict.found = {_key(each) for each in analysed.found}
     distance = analysed.slice.distance

@@ -1,4 +1,4 @@
-"""What may be listed of a program, as if the static information had it; for Python 3.8 and up."""
+"""The places of a program that static information may list; for Python 3.8 and newer."""
 
 from __future__ import annotations
 
@@ -60,13 +60,13 @@ def others(tree):
 
 
 def _unpacks(call):
-    """Whether ``*`` or ``**`` is among the arguments: the analysis lists no such call."""
+    """Whether ``*`` or ``**`` is among the arguments; the analysis lists no such call."""
     is_starred = any(isinstance(argument, ast.Starred) for argument in call.args)
     return is_starred or any(keyword.arg is None for keyword in call.keywords)
 
 
 def _called(node):
-    """The last name of the function that is called; empty for what is no call of a name."""
+    """The last name of the called function; empty for other calls."""
     function = getattr(node, "func", None)
     return getattr(function, "attr", getattr(function, "id", ""))
 

@@ -108,7 +108,7 @@ class Maker:
         self._random = random.Random(seed)
 
     def program(self):
-        """A text with a generator that is run to its end."""
+        """A text with a generator, which is run to its end."""
         parts = [self.statement(2) for _ in range(self._random.randint(1, 4))]
         return (
             "def f():\n"
@@ -246,7 +246,7 @@ def program(seed):
 
 @functools.lru_cache(maxsize=2)
 def _prelude(is_plain):
-    """The names of the prelude, with reports or without; made once, because it takes its time."""
+    """The names of the prelude, with reports or without; made once, because that takes long."""
     names = {"__name__": "program", **OF_NUMPY}
     code = compile(PRELUDE, PATH, "exec", dont_inherit=True) if is_plain else everywhere(PRELUDE)
     exec(code, names)
@@ -254,7 +254,7 @@ def _prelude(is_plain):
 
 
 def _run(code, is_plain):
-    """How it ends with what a tracer sees, its log, and the names that it leaves."""
+    """How it ends, what a tracer sees, its log, and the names that it leaves."""
     names = dict(_prelude(is_plain))
     names["log"].clear()
     ended = outcome(code, names)
@@ -262,7 +262,7 @@ def _run(code, is_plain):
 
 
 def difference(seed):
-    """How a program does something else with the hook: a text, empty where it does the same.
+    """What a program does differently with the hook; an empty text where it does the same.
 
     Returns None where the program cannot be compiled, as for ``yield`` in a comprehension.
     """

@@ -1,4 +1,4 @@
-"""Programs under the hook, within the test's own process."""
+"""Runs programs under the hook, in the process of the test."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _POSITION = ("name", "lineno", "end_lineno", "colno", "end_colno")
 
 
 def listed(lineno: int, column: int, relation: str, **changes: Any) -> Listed:
-    """A comparison of the static information; its key is its place, unless it is named."""
+    """A comparison of the static information; its key is its place, unless it has a name."""
     plain = {
         "key": f"{lineno}:{column}",
         "relation": relation,
@@ -53,7 +53,7 @@ class Taken:
 
 @contextmanager
 def taking() -> Iterator[Taken]:
-    """All reports of this process, as long as the ``with`` lasts."""
+    """All reports of this process while the ``with`` block runs."""
     taken = Taken()
     before = sites._take
     sites.set_take(taken.take)
@@ -77,13 +77,13 @@ def instrumented(source: str, *places: Listed) -> CodeType:
 
 
 def everywhere(source: str) -> CodeType:
-    """The code of a program of which all that may be listed reports."""
+    """The code of a program in which every place that may be listed reports."""
     tree = ast.parse(source)
     return instrumented(source, *comparisons(tree), *others(tree))
 
 
 def at_random(source: str, seed: int) -> CodeType:
-    """The code of a program of which every comparison reports, and half of all else."""
+    """The code of a program in which every comparison reports, and half of the other places."""
     tree = ast.parse(source)
     chosen = random.Random(seed)
     return instrumented(
@@ -99,12 +99,12 @@ def reports(source: str, *places: Listed, **names: object) -> list[tuple[Any, ..
 
 
 def without_addresses(text: str) -> str:
-    """Where an object is in memory is no part of what a program does."""
+    """A text without the addresses of objects, which differ from run to run."""
     return re.sub(r"0x[0-9a-f]+", "0x", text)
 
 
 def outcome(code: CodeType, names: dict[str, object]) -> tuple[object, ...]:
-    """What a program does: how it ends, where its error comes from, and what a tracer sees of it.
+    """What a program does: how it ends, where its error comes from, and what a tracer sees.
 
     A frame of the hook would be seen, too.
     """

@@ -26,7 +26,7 @@ print(*sorted(path.stem for path in folder.glob("test_*")))
 
 
 def result(python: str, name: str, *words: str) -> object:
-    """What one file comes to; a text where it comes to no end."""
+    """The result of one file; a text where it does not end."""
     command = [python, "-W", "ignore", str(PROGRAM), *words, str(ROOT), name]
     try:
         done = subprocess.run(

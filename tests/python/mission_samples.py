@@ -5,25 +5,66 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from rosbags.rosbag1 import Writer
 from rosbags.typesys import Stores, get_typestore
 
-from pytpc.recording.events import EventBuilder, Events, Report
-from pytpc.static.static_info import (
-    Comparison,
-    Counts,
-    LinkUnit,
-    ParameterRead,
-    Place,
-    StaticInfo,
-    Tool,
-)
+from pytpc.recording.events import Events, Report
+from pytpc.recording.summaries import Summaries, Summary
+from pytpc.static.link_unit import Comparison, Counts, LinkUnit, ParameterRead, Place, Tool
+from pytpc.static.static_info import StaticInfo
 
 SECOND = 10**9
 STORE = get_typestore(Stores.ROS1_NOETIC)
+
+
+class EventRow(NamedTuple):
+    """An evaluation, with its time and node."""
+
+    time_ns: int
+    node: str
+    key: str
+    result: bool
+    cmp: float
+    thresh: float
+    res: bool
+
+
+class EventBuilder:
+    """Collects evaluations one at a time."""
+
+    def __init__(self) -> None:
+        self._rows: list[EventRow] = []
+
+    def add(self, time_ns: int, node: str, report: Report) -> None:
+        self._rows.append(EventRow(time_ns, node, *report))
+
+    def build(self) -> Events:
+        return Events.of_rows(self._rows)
+
+
+class SummaryBuilder:
+    """Collects summaries one at a time."""
+
+    def __init__(self) -> None:
+        self._rows: list[Summary] = []
+
+    def add(self, summary: Summary) -> None:
+        self._rows.append(summary)
+
+    def build(self) -> Summaries:
+        return Summaries.of_rows(self._rows)
+
+
+def equal_tables(one: Events | Summaries, other: Events | Summaries) -> bool:
+    """Whether both hold the same rows (NaN equals NaN) under the same words."""
+    theirs = other.columns()
+    return (one.keys, one.nodes) == (other.keys, other.nodes) and all(
+        np.array_equal(mine, theirs[name], equal_nan=mine.dtype == np.float64)
+        for name, mine in one.columns().items()
+    )
 
 
 def key(number: int) -> str:

@@ -1,7 +1,7 @@
-"""Small rospy nodes as text, and what the analysis says about them.
+"""Small rospy nodes as text, and what the analysis finds in them.
 
-A sample is the body of a module; ``PRELUDE`` stands before it. What must be found stands beside
-each line as ``#: PARAMETER RELATION [TYPE]``, several divided by commas, none where there is none.
+A sample is the body of a module behind ``PRELUDE``. The expected comparisons stand beside each line
+as ``#: PARAMETER RELATION [TYPE]``, separated by commas; a line without this has none.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def analysed(text: str, folder: Path, **rules: Any) -> LinkUnit:
 
 
 def marked(text: str) -> set[tuple[int, str, str, str]]:
-    """What the marks of a sample ask for: (line, parameter, relation, type)."""
+    """The comparisons that the marks of a sample expect: (line, parameter, relation, type)."""
     wanted = set()
     for lineno, line in enumerate((PRELUDE + dedent(text)).splitlines(), start=1):
         mark = _MARK.search(line)
@@ -46,6 +46,6 @@ def found(unit: LinkUnit) -> set[tuple[int, str, str, str]]:
 
 
 def only(unit: LinkUnit) -> Comparison:
-    """The one comparison that there is."""
+    """The only comparison."""
     (comparison,) = unit.comparisons
     return comparison

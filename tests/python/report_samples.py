@@ -11,9 +11,9 @@ from mission_samples import comparison, events, ns, static_info
 
 from pytpc.api.report import MissionReport, write_missions
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
-from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
-from pytpc.static.static_info import PathStep
+from pytpc.recording.mission import Recording
+from pytpc.static.link_unit import PathStep
 
 # Two known lines and a gap; the second line is the comparison's own.
 WAY = (

@@ -20,7 +20,8 @@ from mission_samples import comparison, events, link_unit, ns
 
 from pytpc.recording.marks import Mark, MarkType
 from pytpc.recording.mission import Recording, save_recording
-from pytpc.static.static_info import StaticInfo, Tool
+from pytpc.static.link_unit import Tool
+from pytpc.static.static_info import StaticInfo
 
 RECORDED = Path(__file__).parents[2] / "examples" / "recorded_mission"
 STATIC = StaticInfo.of(

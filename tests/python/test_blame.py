@@ -6,17 +6,17 @@ import math
 from dataclasses import replace
 
 import pytest
-from mission_samples import comparison, events, key, ns, static_info
+from mission_samples import SummaryBuilder, comparison, events, key, ns, static_info
 
 from pytpc.base.wording import percent
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.blame import blame
 from pytpc.diagnosis.results.suspects import Accused, Blame, Evaluation
 from pytpc.diagnosis.suggestion.advise import advise_blamed
-from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
 from pytpc.recording.parameter_change import Change
-from pytpc.recording.summaries import Summary, SummaryBuilder
+from pytpc.recording.summaries import Summary
 from pytpc_evaluation.study.case import Case
 from pytpc_evaluation.study.methods import METHODS
 

@@ -23,7 +23,8 @@ from pytpc.base.errors import InputError, MissingToolError, RunError, TpcError, 
 from pytpc.build import build
 from pytpc.build.build import build_workspace, workspace_env
 from pytpc.build.fallback import LeftAlone
-from pytpc.static.static_info import LeftOut, StaticInfo
+from pytpc.static.link_unit import LeftOut
+from pytpc.static.static_info import StaticInfo
 from pytpc.workspace.colcon import (
     Bases,
     BuildError,

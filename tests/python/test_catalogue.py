@@ -14,7 +14,8 @@ from pytpc.conditions.cpp_conditions import Condition, Macro
 from pytpc.conditions.lookup import Answer
 from pytpc.conditions.tpc_details import details
 from pytpc.present.page.catalogue import render
-from pytpc.static.static_info import LinkUnit, StaticInfo
+from pytpc.static.link_unit import LinkUnit
+from pytpc.static.static_info import StaticInfo
 
 NASTY = '</script><img src=x onerror="alert(1)">&amp;'
 

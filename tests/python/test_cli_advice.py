@@ -9,7 +9,8 @@ from click.testing import CliRunner
 from mission_samples import BagFile, comparison, line, link_unit
 
 from pytpc.cli.main import main
-from pytpc.static.static_info import ParameterRead, StaticInfo
+from pytpc.static.link_unit import ParameterRead
+from pytpc.static.static_info import StaticInfo
 
 AWAY = "marks of type II; away from marks it turns"
 HOSTILE = "if (value > \x1b[31mcover_) {"

@@ -9,13 +9,13 @@ from dataclasses import replace
 
 import pytest
 from click.testing import CliRunner
-from mission_samples import BagFile, comparison, events, key, line, ns, static_info
+from mission_samples import BagFile, SummaryBuilder, comparison, events, key, line, ns, static_info
 from report_samples import Page
 
 from pytpc.cli.main import main
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording, save_recording
-from pytpc.recording.summaries import Summary, SummaryBuilder
+from pytpc.recording.summaries import Summary
 from pytpc.values.origins import ORIGINS_FILE, Origin, write_origins
 
 ENOUGH = {"enough": True, "reason": ""}
@@ -120,7 +120,7 @@ def test_a_broken_treatment_is_named(files, tmp_path, document):
     path.write_text(json.dumps(document))
     result = run("report", folder, "--static", static, "-o", tmp_path / "r.html")
     assert result.exit_code == 1
-    assert f"{path}: effect has to be a text" in result.stderr
+    assert f"{path}: effect must be a text" in result.stderr
 
 
 def test_types_and_window_are_those_of_rank(files, tmp_path):

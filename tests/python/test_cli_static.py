@@ -10,7 +10,8 @@ from file_api import reply, target
 from static_units import KEYS, comparison, failed_unit, unit
 
 from pytpc.cli.main import main
-from pytpc.static.static_info import LinkUnit, StaticInfo
+from pytpc.static.link_unit import LinkUnit
+from pytpc.static.static_info import StaticInfo
 
 
 def run(*arguments: str | Path) -> Result:

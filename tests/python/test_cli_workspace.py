@@ -17,7 +17,8 @@ from pytpc.base.errors import InputError
 from pytpc.build.build import BuildResult
 from pytpc.cli import workspace_commands
 from pytpc.cli.main import main
-from pytpc.static.static_info import LeftOut, LinkUnit, StaticInfo
+from pytpc.static.link_unit import LeftOut, LinkUnit
+from pytpc.static.static_info import StaticInfo
 from pytpc.workspace.colcon import Bases, BuildError, BuildOptions
 
 VERSION = (Path(__file__).parents[2] / "VERSION").read_text().strip()

@@ -13,7 +13,7 @@ from static_units import KEYS, comparison, counts, failed_unit, unit
 from pytpc.base.errors import InputError, WorkspaceError
 from pytpc.build.collect import collect_sources, find_copies
 from pytpc.build.stale import BuiltTarget, UnitFile, drop_repeated, drop_stale
-from pytpc.static.static_info import LinkUnit
+from pytpc.static.link_unit import LinkUnit
 
 FOLDER = Path("/b/face")
 

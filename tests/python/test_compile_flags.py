@@ -9,7 +9,7 @@ from file_api import reply, target
 from static_units import unit
 
 from pytpc.conditions.compile_flags import flags_for, meaningful
-from pytpc.static.static_info import LinkUnit
+from pytpc.static.link_unit import LinkUnit
 
 ROOT = "/ws/src/face"
 GROUP: dict[str, Any] = {

@@ -22,7 +22,8 @@ from pytpc.conditions.lookup import (
     Answer,
 )
 from pytpc.conditions.lookup import look_up_conditions as look_up
-from pytpc.static.static_info import LinkUnit, StaticInfo
+from pytpc.static.link_unit import LinkUnit
+from pytpc.static.static_info import StaticInfo
 
 pytestmark = pytest.mark.skipif(not libclang(), reason="libclang 19 is not installed")
 

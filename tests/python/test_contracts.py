@@ -17,7 +17,7 @@ BREAKS = {
         "from pytpc.python_analysis.flow import reaching",
     ),
     "product": ("pytpc/values/scalars.py", "import pytpc_evaluation.study.plan"),
-    "inside-a-node": ("pytpc/python_runtime/words.py", "from pytpc.base import errors"),
+    "inside-a-node": ("pytpc/python_runtime/errors.py", "from pytpc.base import errors"),
     "pure-diagnosis": (
         "pytpc/diagnosis/ranking/mark_ranking.py",
         "from pytpc.ingest import reading",

@@ -9,7 +9,7 @@ from dataclasses import replace
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mission_samples import comparison, events, key, link_unit, ns, static_info
+from mission_samples import SummaryBuilder, comparison, events, key, link_unit, ns, static_info
 
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.question import Question
@@ -17,8 +17,9 @@ from pytpc.diagnosis.suggestion.smallest_change import At, smallest_change
 from pytpc.diagnosis.suggestion.what_if import CLOSED_LOOP, what_if
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
-from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
-from pytpc.static.static_info import ParameterRead, StaticInfo, Transform
+from pytpc.recording.summaries import Summaries, Summary
+from pytpc.static.link_unit import ParameterRead, Transform
+from pytpc.static.static_info import StaticInfo
 
 NAN, INF = math.nan, math.inf
 

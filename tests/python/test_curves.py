@@ -12,8 +12,8 @@ from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.diagnosis.scores.score_tables import rank_curves
 from pytpc.diagnosis.scores.scores import NONE
-from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
 
 STATIC = static_info(
     comparison(0, "coverage", distance=1),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import struct
 from dataclasses import replace
 from pathlib import Path
 
@@ -286,10 +285,16 @@ def test_descriptions_in_a_bag(tmp_path):
 
 def test_broken_messages_and_bags(tmp_path):
     store = dynamic_store()
-    raw = bytes(store.serialize_ros1(description(store), f"{NAME}ConfigDescription"))
+    kind = f"{NAME}ConfigDescription"
+    raw = bytes(store.serialize_ros1(description(store), kind))
+    definition, _ = store.generate_msgdef(kind, ros_version=1)
+    assert len(decode_description(raw, "/n/parameter_descriptions", definition)) == 4
     for length in range(0, len(raw), 7):
-        with pytest.raises((ValueError, IndexError, struct.error)):
-            decode_description(raw[:length], "/n/parameter_descriptions")
+        with pytest.raises(ValueError, match=r"^not a ConfigDescription: "):
+            decode_description(raw[:length], "/n/parameter_descriptions", definition)
+    for wrong in ("", "string data", "Group[] groups", "\0"):
+        with pytest.raises(ValueError, match=r"^not a ConfigDescription: "):
+            decode_description(raw, "/n/parameter_descriptions", wrong)
     bag = tmp_path / "m.bag"
     bag.write_bytes(b"#ROSBAG V2.0\n broken")
     (tmp_path / "other.bag").write_bytes(b"something else")

@@ -12,7 +12,8 @@ from mission_samples import comparison, key, link_unit, static_info
 from rich.console import Console
 
 from pytpc.base.errors import WorkspaceError
-from pytpc.static.static_info import Comparison, LinkUnit, StaticInfo
+from pytpc.static.link_unit import Comparison, LinkUnit
+from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.demo.demo_examples import (
     IMAGE_CAPTURE,
     SHARED_PACKAGE,

@@ -8,7 +8,8 @@ from static_units import KEYS, comparison, unit
 
 from pytpc.conditions.lookup import Answer
 from pytpc.conditions.tpc_details import Exposed, details, in_words, shown_default
-from pytpc.static.static_info import LinkUnit, StaticInfo, Transform
+from pytpc.static.link_unit import LinkUnit, Transform
+from pytpc.static.static_info import StaticInfo
 
 
 @pytest.mark.parametrize(

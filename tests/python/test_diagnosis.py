@@ -39,9 +39,9 @@ from pytpc.diagnosis.ranking.posterior import (
 )
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.scores.score_tables import Tpcs
-from pytpc.ingest import Recording
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
 from pytpc.recording.parameter_change import Change
 from pytpc_evaluation.study.fit import REASONED
 

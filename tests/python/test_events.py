@@ -8,17 +8,12 @@ import pyarrow.parquet as pq
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mission_samples import SECOND, events, key, ns
+from mission_samples import SECOND, EventBuilder, equal_tables, events, key, ns
 
 from pytpc.base.errors import InputError
 from pytpc.recording.events import (
-    SCHEMA,
-    EventBuilder,
     Events,
     Report,
-    concat,
-    read_parquet,
-    write_parquet,
 )
 
 ROWS = st.lists(
@@ -89,16 +84,6 @@ def test_with_keys_leaves_others_out_and_adds_missing_ones():
     assert other.by_key.rows(1).tolist() == []
 
 
-def test_concat_joins_words_and_keeps_the_order_of_tables():
-    left = events([(0, 2, 0, 1, 0), (1, 2, 0, 2, 0)], node="/b")
-    right = events([(1, 1, 0, 3, 0), (0, 2, 0, 4, 0)], node="/a")
-    joined = concat([left, right])
-    assert joined.cmp.tolist() == [1, 4, 2, 3]
-    assert joined.keys == (key(1), key(2))
-    assert [joined.nodes[code] for code in joined.node] == ["/b", "/a", "/b", "/a"]
-    assert len(concat([])) == 0
-
-
 def test_columns_that_do_not_fit_are_refused():
     good = {
         "time_ns": [0],
@@ -133,24 +118,24 @@ def test_arrays_are_read_only():
 def test_arrow_and_back(rows):
     table = events(rows)
     arrow = table.to_arrow()
-    assert arrow.schema.equals(SCHEMA)
-    assert Events.from_arrow(arrow).equals(table)
+    assert arrow.schema.equals(Events.schema)
+    assert equal_tables(Events.from_arrow(arrow), table)
 
 
 def test_parquet_and_back(tmp_path):
     table = events([(1, 0, 1, math.nan, -math.inf, "/a"), (0, 1, 0, 0.1, 5e-324, "/b")])
     path = tmp_path / "deep" / "events.parquet"
-    write_parquet(table, path)
-    assert read_parquet(path).equals(table)
+    table.write(path)
+    assert equal_tables(Events.read(path), table)
     # The types survive for other readers too.
-    assert pq.read_schema(path).field("key").type == SCHEMA.field("key").type
+    assert pq.read_schema(path).field("key").type == Events.schema.field("key").type
     assert [p.name for p in path.parent.iterdir()] == ["events.parquet"]
 
 
 def test_the_same_events_make_the_same_bytes(tmp_path):
     rows = [(1, 0, 1, 2, 3, "/a"), (0, 1, 0, 0.1, 5, "/b")]
-    write_parquet(events(rows), tmp_path / "one")
-    write_parquet(events(rows), tmp_path / "two")
+    events(rows).write(tmp_path / "one")
+    events(rows).write(tmp_path / "two")
     assert (tmp_path / "one").read_bytes() == (tmp_path / "two").read_bytes()
 
 
@@ -164,36 +149,36 @@ def test_chunks_with_their_own_dictionaries():
 def test_files_that_are_not_events(tmp_path):
     path = tmp_path / "e.parquet"
     with pytest.raises(InputError, match=r"e\.parquet: cannot be read: No such file"):
-        read_parquet(path)
+        Events.read(path)
     path.write_bytes(b"PAR1 and then nothing")
     with pytest.raises(InputError, match="not a file of events"):
-        read_parquet(path)
+        Events.read(path)
     whole = tmp_path / "whole.parquet"
-    write_parquet(events([(n, 0, 1, n, 1) for n in range(1000)]), whole)
+    events([(n, 0, 1, n, 1) for n in range(1000)]).write(whole)
     path.write_bytes(whole.read_bytes()[:-40])
     with pytest.raises(InputError, match="not a file of events"):
-        read_parquet(path)
+        Events.read(path)
     table = events([(0, 0, 1, 1, 1)]).to_arrow()
     pq.write_table(table.drop_columns(["thresh"]), path)
     with pytest.raises(InputError, match="column thresh occurs 0 times"):
-        read_parquet(path)
+        Events.read(path)
     floats = table.set_column(0, "time_ns", pa.array([0.5]))
     pq.write_table(floats, path)
     with pytest.raises(InputError, match="column time_ns is double, not int64"):
-        read_parquet(path)
+        Events.read(path)
     empty_place = table.set_column(3, "cmp", pa.array([None], pa.float64()))
     pq.write_table(empty_place, path)
     with pytest.raises(InputError, match="column cmp has 1 missing values"):
-        read_parquet(path)
+        Events.read(path)
 
 
 # A process that ends while a thread of Arrow's lets go of something of Python is aborted: now and
 # then, after all of its work. Neither bytes nor a stream of Python's may be what is read.
 def test_what_is_read_is_nothing_of_python(tmp_path, monkeypatch):
     path = tmp_path / "events.parquet"
-    write_parquet(events([(1, 0, 1, 5, 0)]), path)
+    events([(1, 0, 1, 5, 0)]).write(path)
     read, sources = pq.ParquetFile, []
     monkeypatch.setattr(pq, "ParquetFile", lambda source: sources.append(source) or read(source))
     monkeypatch.setattr(pq, "read_table", None)
-    assert len(read_parquet(path)) == 1
+    assert len(Events.read(path)) == 1
     assert [type(source) for source in sources] == [pa.OSFile]

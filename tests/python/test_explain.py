@@ -11,7 +11,8 @@ from static_units import KEYS, comparison, counts, not_exposed, spot, step, unit
 from pytpc.base.errors import InputError
 from pytpc.cli.main import main
 from pytpc.static.explanations import look_up, why_no_comparison
-from pytpc.static.static_info import LinkUnit, StaticInfo
+from pytpc.static.link_unit import LinkUnit
+from pytpc.static.static_info import StaticInfo
 
 
 def read(name: str, lineno: int) -> dict[str, Any]:

@@ -11,8 +11,9 @@ from mission_samples import key
 from tpc_file import FULL, TpcFile, dropped, header, report, simulated, site, slot, summary, sync
 
 from pytpc.base.errors import InputError
-from pytpc.ingest import Dropped, read
 from pytpc.ingest.binary_clock import Clock
+from pytpc.ingest.reading import read
+from pytpc.recording.mission import Dropped
 
 REAL = 1_700_000_000 * 10**9
 SECOND = 10**9

@@ -9,19 +9,20 @@ import sqlite3
 import numpy as np
 import pytest
 import tpc_file
-from mission_samples import BagFile, key, line, ns
+from mission_samples import BagFile, equal_tables, key, line, ns
 from ros2_bags import Ros2Bag
 from test_mission import log
 from tpc_file import TpcFile, report, site, sync
 
 from pytpc.base.errors import InputError
-from pytpc.ingest import Dropped, read, save_recording
 from pytpc.ingest.bag import _DECODERS
 from pytpc.ingest.bag_chunks import ChunkMessages as Chunk
 from pytpc.ingest.gathering import Gathering
 from pytpc.ingest.messages import Messages
+from pytpc.ingest.reading import read
 from pytpc.ingest.rosout_line import PREFIX
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Dropped, save_recording
 
 SUMMARY = (
     "threshold_summary:{key},1,cmp:1,thresh:0.5,res:1,count:3,flops:1,diff:-0.25;0.5;0.1,"
@@ -206,7 +207,7 @@ def test_text_without_reports_is_told(tmp_path):
     (tmp_path / "a.log").write_text("[ INFO] [1.5]: hello\n")
     (tmp_path / "b.log").write_text(f"[ INFO] [1.5]: {line(1, 0, 1, 2)}\n")
     recording = read(tmp_path)
-    assert recording.notes == (f"no report in 1 text file, as {tmp_path / 'a.log'}",)
+    assert recording.notes == (f"1 text file without a report, for example {tmp_path / 'a.log'}",)
 
 
 def test_marks_as_a_spreadsheet_writes_them(tmp_path):
@@ -291,7 +292,7 @@ def test_batches(tmp_path):
         Dropped(key(1), "/uav", 4, 1, "process"),
     )
     assert [record.what for record in recording.malformed_first] == [
-        "3 reports are announced, 1 are there",
+        "the first line announces 3 reports, 1 found",
         "a line that begins with # is #seq:N,count:N,dropped:N,pid:P,steady:S, column 1",
     ]
     table = recording.summaries
@@ -370,7 +371,7 @@ def test_the_same_bag_twice(tmp_path):
     recording = read([one, two])
     assert [cmp for *_, cmp in found(recording)] == list(range(10))
     assert recording.notes == (
-        f"10 reports in {two}: /rosout that came another way too: counted once",
+        f"10 reports in {two}: /rosout that also came another way: counted once",
     )
     assert len(recording.marks) == 1
     # By two names the same file.
@@ -384,7 +385,7 @@ def test_a_binary_file_beside_a_bag(tmp_path):
     file = tpc_of(tmp_path / "b.tpc", shift_ns=500_000, values=range(5, 15))
     recording = read([bag, file])
     assert [cmp for *_, cmp in found(recording)] == list(range(15))
-    assert recording.notes == (f"5 reports in {file} that came another way too: counted once",)
+    assert recording.notes == (f"5 reports in {file} that also came another way: counted once",)
     # 2 ms apart, or of another node, they are not.
     far = tpc_of(tmp_path / "c.tpc", shift_ns=2_000_000)
     assert len(read([bag, far]).events) == 20
@@ -413,7 +414,7 @@ def test_files_of_two_processes_share_nothing(tmp_path):
     recording = read([*paths, copy])
     assert len(recording.events) == 15
     assert recording.events.nodes == ("/uav", "/uav (3)")
-    assert recording.notes == (f"5 reports in {copy} that came another way too: counted once",)
+    assert recording.notes == (f"5 reports in {copy} that also came another way: counted once",)
 
 
 def test_files_that_were_joined_are_refused(tmp_path):
@@ -434,7 +435,7 @@ def test_sources_that_lie_apart_are_told(tmp_path):
     assert len(recording.events) == 12
     assert recording.notes == (
         f"{bag} begins 1,699,999,992 s after {file} ends: on different clocks, or one after the"
-        " other? Their times are taken as they are",
+        " other? Their times are used as they are",
     )
 
 
@@ -472,7 +473,7 @@ def test_a_recorded_mission_with_files(tmp_path):
 def test_an_ingested_folder_beside_others(tmp_path):
     first = read(bag_of(tmp_path / "a.bag"))
     save_recording(first, tmp_path / "a")
-    assert read(tmp_path / "a").events.equals(first.events)
+    assert equal_tables(read(tmp_path / "a").events, first.events)
     recording = read([tmp_path / "a", tpc_of(tmp_path / "b.tpc", values=range(8, 12))])
     assert [cmp for *_, cmp in found(recording)] == list(range(12))
     assert recording.marks == first.marks

@@ -11,17 +11,17 @@ import pyarrow.parquet as pq
 import pytest
 import tpc_file
 from click.testing import CliRunner
-from mission_samples import BagFile, key, line, ns
+from mission_samples import BagFile, equal_tables, key, line, ns
 from tpc_file import FULL, TpcFile, report, site, summary, sync
 
 from pytpc.base.errors import TpcError
 from pytpc.cli.main import main
-from pytpc.ingest import load_recording, read
 from pytpc.ingest import spool as spool_module
 from pytpc.ingest.gathering import Gathering
 from pytpc.ingest.merged import Merged
-from pytpc.ingest.reading import gather, opened
-from pytpc.recording.events import read_parquet
+from pytpc.ingest.reading import gather, opened, read
+from pytpc.recording.events import Events
+from pytpc.recording.mission import load_recording
 
 ROOT = Path(__file__).parents[2]
 
@@ -62,8 +62,8 @@ def test_runs_on_disk_give_the_same(mission, tmp_path, monkeypatch):
     gather(mission, gathering)
     Merged(gathering, "a").save(tmp_path / "out")
     parts = load_recording(tmp_path / "out")
-    assert parts.events.equals(whole.events)
-    assert parts.summaries.equals(whole.summaries)
+    assert equal_tables(parts.events, whole.events)
+    assert equal_tables(parts.summaries, whole.summaries)
     for name in ("marks", "start_ns", "end_ns", "malformed", "malformed_first", "notes", "lost"):
         assert getattr(parts, name) == getattr(whole, name), name
     assert (scratch / "events").stat().st_size > 0
@@ -111,7 +111,7 @@ def test_convert_as_json_to_a_file(mission, tmp_path):
         1,
         "mission",
     )
-    assert read_parquet(out).equals(read(mission).events)
+    assert equal_tables(Events.read(out), read(mission).events)
     assert pq.read_schema(out).names[0] == "time_ns"
 
 

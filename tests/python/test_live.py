@@ -9,17 +9,25 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mission_samples import comparison, key, ns, static_info
+from mission_samples import (
+    EventBuilder,
+    SummaryBuilder,
+    comparison,
+    equal_tables,
+    key,
+    ns,
+    static_info,
+)
 
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.diagnosis.scores.live_scores import LiveRanking, LiveScores, TooOldError
 from pytpc.diagnosis.scores.scores import NONE, Before, Formula, type1, type2
 from pytpc.diagnosis.scores.summary_scores import LogTables, type2_of_summaries
-from pytpc.ingest import Recording
-from pytpc.recording.events import EventBuilder, Report
+from pytpc.recording.events import Report
 from pytpc.recording.marks import Mark
-from pytpc.recording.summaries import Summary, SummaryBuilder
+from pytpc.recording.mission import Recording
+from pytpc.recording.summaries import Summary
 
 NAN, INF = math.nan, math.inf
 KEYS = [key(0), key(1), key(2)]
@@ -112,7 +120,7 @@ def test_equal_times_of_several_nodes_are_in_the_order_of_arrival():
     rows = [(ns(1), key(0), node, True, value, 0.0) for node, value in values]
     live = LiveScores(KEYS, DISTANCE, 3.0)
     add(live, rows)
-    assert live._events(ns(1), Before.nothing(3)).equals(table(rows))
+    assert equal_tables(live._events(ns(1), Before.nothing(3)), table(rows))
     assert live.last(key(0), ns(1)).cmp == 4.0
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pytpc.ingest.binary_layout import CHUNK, KEPT, RECORD, SLOT
-from pytpc.python_runtime import file_sink, log_layout
+from pytpc.ingest.binary_chunks import CHUNK, KEPT, RECORD, SLOT
+from pytpc.python_runtime import log_layout, sinks
 
 HEADER = (Path(__file__).parents[2] / "runtime_log/Layout.h").read_text()
 SIZES = {"uint32_t": 4, "uint64_t": 8, "int64_t": 8, "double": 8, "char": 1}
@@ -87,8 +87,8 @@ def test_the_records():
     summary = places_of("Summary")
     assert offsets(KEPT) == list(summary.values())
     # What a summary is, its first four bytes, is written last.
-    assert summary["Site"] + file_sink._SUMMARY.size == summary[""]
-    assert summary["Count"] == file_sink._COUNT_AT
+    assert summary["Site"] + sinks._SUMMARY.size == summary[""]
+    assert summary["Count"] == sinks._COUNT_AT
 
 
 def test_the_chunks():
@@ -97,4 +97,4 @@ def test_the_chunks():
     assert chunk[""] == log_layout.CHUNK_HEADER_BYTES
     slot = places_of("Slot")
     assert offsets(SLOT) == list(slot.values())
-    assert (slot["Begun"], slot[""]) == (file_sink._BEGUN_AT, log_layout.SLOT_BYTES)
+    assert (slot["Begun"], slot[""]) == (sinks._BEGUN_AT, log_layout.SLOT_BYTES)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from mission_samples import BagFile, line, ns
 
 from pytpc.base.errors import InputError
-from pytpc.ingest import load_recording, read, read_bag, save_recording
+from pytpc.ingest.reading import read
 from pytpc.recording.marks import (
     MARK_TYPES,
     Mark,
@@ -25,6 +25,7 @@ from pytpc.recording.marks import (
     topic_of_marks,
     write_marks,
 )
+from pytpc.recording.mission import load_recording, save_recording
 
 MARKS = st.builds(
     Mark,
@@ -129,9 +130,12 @@ def test_files_come_back(tmp_path_factory: pytest.TempPathFactory, marks: list[M
     [
         ("", ":1: the first line is not time_ns,type,observer,note"),
         ("time,type\n", ":1: the first line is not"),
-        ("time_ns,type,observer,note\n1,I,,\nx,I,,\n", ":3: 'x' is no time in nanoseconds"),
+        ("time_ns,type,observer,note\n1,I,,\nx,I,,\n", ":3: 'x' is not a time in nanoseconds"),
         ("time_ns,type,observer,note\n9223372036854775808,I,,\n", ":2: '92233720368547758"),
-        ("time_ns,type,observer,note\n1,III,,\n", ":2: 'III' is no type of mark"),
+        (
+            "time_ns,type,observer,note\n1,III,,\n",
+            ":2: 'III' is not a type of mark (I, II or nothing)",
+        ),
         ("time_ns,type,observer,note\n1,I,,,more\n", ":2: 5 columns, not 4"),
     ],
 )
@@ -177,7 +181,7 @@ IN_BAG = Mark(ns(120), None, "ana", "it stands, still")
 
 
 def test_a_bag_with_notes_and_what_was_taken_back(bag: Path):
-    recording = read_bag(bag)
+    recording = read(bag)
     assert recording.marks == (IN_BAG,)
     assert [(one.topic, one.what) for one in recording.malformed_first] == [
         ("/ana/mark_note", "not a note: expected SECONDS.NANOSECONDS,NOTE")
@@ -189,7 +193,7 @@ def test_marks_beside_a_bag_are_read_with_it(bag: Path, tmp_path: Path):
     write_marks([late, Mark(ns(120), None, "ana")], marks_beside(bag))
     for source in (bag, tmp_path, [bag, marks_beside(bag)]):
         assert read(source).marks == (IN_BAG, late)
-    assert read_bag(bag).marks == (IN_BAG, late)
+    assert read(bag).marks == (IN_BAG, late)
 
 
 def test_marks_beside_a_folder_of_recordings(bag: Path, tmp_path: Path):
@@ -213,5 +217,8 @@ def test_marks_beside_an_ingested_folder(bag: Path, tmp_path: Path):
 
 def test_a_broken_file_beside_a_bag_is_said(bag: Path):
     marks_beside(bag).write_text("time_ns,type,observer,note\n1,VI\n")
-    with pytest.raises(InputError, match=r"mission.bag.marks.csv:2: 'VI' is no type of mark"):
+    with pytest.raises(
+        InputError,
+        match=r"mission\.bag\.marks\.csv:2: 'VI' is not a type of mark \(I, II or nothing\)$",
+    ):
         read(bag)

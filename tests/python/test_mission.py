@@ -12,9 +12,12 @@ from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 from click.testing import CliRunner
+from hypothesis import given
+from hypothesis import strategies as st
 from mission_samples import comparison, events, ns, static_info
 from rich.console import Console
 from rosbags.highlevel import AnyReader
@@ -23,8 +26,10 @@ from pytpc.api.record import sink_settings
 from pytpc.base.errors import InputError, RunError
 from pytpc.cli.mission_commands import record_command
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
-from pytpc.ingest import Recording
+from pytpc.ingest.losses import LossCounter
+from pytpc.ingest.ros1 import decode_log
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
 from pytpc.ros.mission_run import (
     MissionRun,
     RecorderStatus,
@@ -37,10 +42,10 @@ from pytpc.ros.mission_run import (
 from pytpc.ros.ros1.bag_file import BagFile
 from pytpc.ros.ros1.graph import GraphProcess, RosGraph
 from pytpc.ros.ros1.launch_mission import launch_command, run_mission
-from pytpc.ros.ros1.losses import BatchCounter, LossCounter
 from pytpc.ros.ros1.master import Master
 from pytpc.ros.ros1.record_graph import record_graph
 from pytpc.ros.ros1.recorder import Discovery, Recorder
+from pytpc.ros.ros1.relay import Relay
 from pytpc.ros.ros1.subscriber import Source
 from pytpc_evaluation.demo.demo import TreatedMission, failures, result_table
 from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER, Example
@@ -97,9 +102,9 @@ def log(node: bytes, number: int, text: bytes = b"hello", frame: bytes = b"") ->
 def test_loss_counter_counts_the_numbers_that_are_missing():
     counter = LossCounter()
     # /a: 0 1 2 | 5: two are missing (3, 4) | 6. /b begins at 4: 1 to 3 were sent before.
-    for node, number in [(b"/a", 0), (b"/a", 1), (b"/b", 4), (b"/a", 2), (b"/a", 5), (b"/b", 5)]:
-        counter.see(log(node, number))
-    counter.see(log(b"/a", 6))
+    for node, number in [("/a", 0), ("/a", 1), ("/b", 4), ("/a", 2), ("/a", 5), ("/b", 5)]:
+        counter.see(node, number)
+    counter.see("/a", 6)
     assert counter.lost == Counter({"/a": 2})
     assert counter.missed_before == Counter({"/b": 3})
 
@@ -108,9 +113,9 @@ def test_loss_counter_spares_the_number_that_rosout_got_of_a_latched_sender():
     # 1 | 3: rosout came after 1, and was sent it again as 2. 3 | 5: 4 is missing. /b: no latch.
     counter = LossCounter()
     for number in (1, 3, 5):
-        counter.see(log(b"/a", number), "/a", latched=True)
+        counter.see("/a", number, latched=True)
     for number in (1, 3):
-        counter.see(log(b"/b", number), "/b")
+        counter.see("/b", number)
     assert counter.lost == Counter({"/a": 1, "/b": 1})
 
 
@@ -118,49 +123,59 @@ def test_loss_counter_spares_no_larger_gap():
     # 1 | 4: 2 and 3 are missing, and only one of them can have gone to rosout.
     counter = LossCounter()
     for number in (1, 4):
-        counter.see(log(b"/a", number), "/a", latched=True)
+        counter.see("/a", number, latched=True)
     assert counter.lost == Counter({"/a": 2})
 
 
 def test_loss_counter_takes_a_restarted_node_for_a_new_beginning():
     counter = LossCounter()
     for number in (8, 9, 0, 1):
-        counter.see(log(b"/a", number))
+        counter.see("/a", number)
     assert counter.lost == Counter()
 
 
+@given(
+    st.lists(st.tuples(st.sampled_from(["/a", "/b"]), st.integers(0, 9)), min_size=1),
+    st.integers(0, 50),
+)
+def test_many_messages_at_once_are_counted_as_one_by_one(messages, cut):
+    one_by_one, at_once = LossCounter(), LossCounter()
+    for node, number in messages:
+        one_by_one.see(node, number, latched=node == "/a")
+    for part in (messages[:cut], messages[cut:]):
+        numbers = np.array([number for _, number in part], np.int64)
+        at_once.see_all([node for node, _ in part], numbers, {"/a"})
+    assert (at_once.lost, at_once.missed_before) == (one_by_one.lost, one_by_one.missed_before)
+
+
 def test_who_replays_a_bag_numbers_anew():
-    counter = LossCounter()
+    relay = Relay(pytest.fail)
     for number, node in enumerate([b"/a", b"/b", b"/b", b"/a"]):
-        counter.see(log(node, number), "/play")
-    counter.see(log(b"/b", 9), "/play")
-    assert (counter.lost, counter.missed_before) == (Counter({"/play": 5}), Counter())
+        relay.take(log(node, number), "/play")
+    relay.take(log(b"/b", 9), "/play")
+    assert relay.lost == 5
 
 
-def test_loss_counter_gives_the_text_behind_a_frame_name():
-    assert LossCounter().see(log(b"/a", 1, b"threshold_information:x", b"map")) == (
+def test_a_log_message_has_its_text_behind_a_frame_name():
+    assert decode_log(log(b"/a", 1, b"threshold_information:x", b"map")).msg == (
         b"threshold_information:x"
     )
 
 
 def batch(seq: int, count: int, pid: int = 1) -> bytes:
-    text = f"#seq:{seq},count:{count},dropped:0,pid:{pid},steady:1.0\n1.5,...".encode()
-    return struct.pack("<I", len(text)) + text
+    return f"#seq:{seq},count:{count},dropped:0,pid:{pid},steady:1.0\n1.5,...".encode()
 
 
 # /a's process 1 begins with 3: 0 to 2 were sent before. 3 4 | 7 8 9: two are missing. Process 2 is
 # /a started again. A message of one line has no number.
 def test_batches_that_are_missing_are_counted():
-    losses = LossCounter()
-    counter = BatchCounter(losses)
-    seen = [counter.see("/a", batch(3, 2)), counter.see("/a", batch(7, 3))]
-    seen += [counter.see("/a", batch(0, 4, pid=2)), counter.see("/a", batch(4, 1, pid=2))]
+    counter = LossCounter()
+    seen = [counter.see_text("/a", batch(3, 2)), counter.see_text("/a", batch(7, 3))]
+    seen += [counter.see_text("/a", batch(0, 4, pid=2)), counter.see_text("/a", batch(4, 1, pid=2))]
     assert seen == [2, 3, 4, 1]
-    assert counter.see("/b", struct.pack("<I", 5) + b"1.5,k") == 1
-    assert counter.see("/b", struct.pack("<I", 6) + b"#seq:x") == 0
-    assert (losses.lost, losses.missed_before) == (Counter({"/a": 2}), Counter({"/a": 3}))
-    with pytest.raises(ValueError, match="no std_msgs/String"):
-        counter.see("/b", struct.pack("<I", 7) + b"x")
+    assert counter.see_text("/b", b"1.5,k") == 1
+    assert counter.see_text("/b", b"#seq:x") == 0
+    assert (counter.lost, counter.missed_before) == (Counter({"/a": 2}), Counter({"/a": 3}))
 
 
 class Subscriber:
@@ -209,8 +224,8 @@ def test_a_master_that_is_gone_or_new(tmp_path, state):
 
 @pytest.mark.parametrize("length", [0, 15, 17, 24, 30])
 def test_a_message_that_is_no_log_is_an_error(length):
-    with pytest.raises(ValueError, match="no rosgraph_msgs/Log"):
-        LossCounter().see(log(b"/node", 1)[:length])
+    with pytest.raises(ValueError, match=f"^a log message of {length} bytes ends too early$"):
+        decode_log(log(b"/node", 1)[:length])
 
 
 def test_bag_has_its_name_only_when_it_is_complete(tmp_path):

@@ -17,8 +17,8 @@ from pytpc.diagnosis.ranking.other_values import (
 )
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.scores.score_tables import Tpcs
-from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
 from pytpc.static.link_unit import Transform
 
 STATIC = static_info(

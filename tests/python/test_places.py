@@ -5,8 +5,8 @@ from typing import Any
 
 from static_units import KEYS, comparison, unit
 
+from pytpc.static.link_unit import LinkUnit
 from pytpc.static.places import KeyIn, merge_places
-from pytpc.static.static_info import LinkUnit
 
 HEADER = "/ws/install/include/common/limits.h"
 ORIGINAL = "/ws/src/common/include/common/limits.h"

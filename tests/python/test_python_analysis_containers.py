@@ -1,4 +1,4 @@
-"""Parameters in lists and dicts: containers that are joined, and what is done with tables."""
+"""Parameters in lists and dicts: containers that are joined, and operations on tables."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is an exposing statement in Python, and the distance to it."""
+"""Exposing statements in Python, and the distance to them."""
 
 from dataclasses import replace
 from pathlib import Path

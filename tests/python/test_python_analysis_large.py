@@ -1,4 +1,4 @@
-"""Programs in which a value may be many objects: what is told apart, and what is given up."""
+"""Programs in which a value may be many objects: which are distinguished, and which given up."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from textwrap import indent
 
 from python_analysis_samples import analysed
 
-from pytpc.python_analysis.ir.program import Loader, Program
+from pytpc.python_analysis.ir.program import Program
 from pytpc.python_analysis.points_to.points_to import PointsTo
 from pytpc.python_analysis.rules_file import load_rules
 from pytpc.python_analysis.sources.packages import entry_of
@@ -41,7 +41,8 @@ def test_an_object_made_at_each_of_a_hundred_places(tmp_path: Path) -> None:
 def points_of(text: str, folder: Path) -> PointsTo:
     (folder / "node.py").write_text(text)
     entry = entry_of(folder / "node.py")
-    program = Loader(Program(entry.name, entry.package, entry.root), entry).load()
+    program = Program(entry)
+    program.load()
     return PointsTo(program, load_rules())
 
 

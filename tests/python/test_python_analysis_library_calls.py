@@ -1,4 +1,4 @@
-"""Comparisons inside of library functions: which there are, and what is none."""
+"""Comparisons inside library functions: which calls compare, and which do not."""
 
 from __future__ import annotations
 

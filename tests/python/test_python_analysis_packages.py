@@ -11,7 +11,8 @@ from click.testing import CliRunner
 from pytpc.base.errors import InputError
 from pytpc.cli.main import main
 from pytpc.python_analysis.sources.cmake_programs import read_programs
-from pytpc.python_analysis.sources.packages import Entry, NameFault, entries
+from pytpc.python_analysis.sources.packages import NameFault, entries
+from pytpc.python_analysis.sources.scripts import Entry
 from pytpc.python_analysis.sources.setup_files import read_setup
 from pytpc.static.static_info import StaticInfo
 
@@ -29,7 +30,7 @@ def main():
 
 
 def write(folder: Path, **files: str) -> Path:
-    """Files of a package; in their names two underlines stand for a slash, and ``_py`` for .py."""
+    """Write files of a package; in their names ``__`` stands for a slash, and ``_py`` for .py."""
     name = folder.name
     (folder).mkdir(parents=True, exist_ok=True)
     (folder / "package.xml").write_text(MANIFEST.format(name))
@@ -45,7 +46,7 @@ def put(folder: Path, path: str, text: str) -> None:
 
 
 def names(found: list[Entry]) -> list[tuple[str, str, str]]:
-    """Name, script below its package, and where it begins."""
+    """Name, script below its package, and the module and function where it begins."""
     return [(e.name, str(e.script.relative_to(e.root)), e.begin) for e in found]
 
 
@@ -353,7 +354,7 @@ def test_a_broken_manifest_is_one_warning(tmp_path: Path) -> None:
     (line,) = done.stderr.splitlines()
     where = f"{source}/user/package.xml:2"
     assert line.startswith(f"user/package.xml reports nothing: {where}: not XML: mismatched tag")
-    assert line.endswith("; the folder's name stands for the package's")
+    assert line.endswith("; using the folder's name as the package's")
     units = StaticInfo.load(output).units
     assert {(unit.package, unit.link_unit) for unit in units} == {
         ("user", "user"),
@@ -391,7 +392,7 @@ def test_links(tmp_path: Path) -> None:
     assert [(Path(fault.path or "").name, fault.message) for fault in faults] == [
         ("gone.py", "cannot be read: No such file or directory"),
         ("loop.py", "cannot be read: Too many levels of symbolic links"),
-        ("pipe.py", "no ordinary file"),
+        ("pipe.py", "not a regular file"),
     ]
 
 
@@ -402,4 +403,4 @@ def test_a_name_that_is_not_utf_8_is_left_out(tmp_path: Path) -> None:
     assert [entry.name for entry in entries(tmp_path, faults.append)] == ["node"]
     (fault,) = faults
     assert str(fault).isascii()
-    assert r"n\xffde.py: a file's name that is not UTF-8" in str(fault)
+    assert r"n\xffde.py: the name of this file is not UTF-8" in str(fault)

@@ -1,4 +1,4 @@
-"""Lists of rclpy's parameters: those that are asked for, and those that a callback is handed."""
+"""Lists of rclpy's parameters: requested ones, and those that a callback gets."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Nodes in the manner of real packages: state machines, actions, configurations, threads, numpy.
+"""Nodes like those of real packages: state machines, actions, configurations, threads, numpy.
 
-The marks beside the lines were written by hand, from the source, before the analysis was asked.
+The marks beside the lines were written by hand, from the source, before the analysis was run.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Parameter reads of Python, and the ways of their values to comparisons."""
+"""Parameter reads in Python, and how their values reach comparisons."""
 
 from pathlib import Path
 

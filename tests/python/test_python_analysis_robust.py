@@ -1,4 +1,4 @@
-"""What no analysis may break on: odd files, errors of its own, time without end."""
+"""Inputs that must not break the analysis: odd files, internal errors, endless loops."""
 
 from __future__ import annotations
 
@@ -80,8 +80,8 @@ OLD = {
     "if a <> b: pass": "<>",
     "x = `y`": "backquotes",
     "x = 0777": "an octal number",
-    "x = 10L": "a long number",
-    "x = ur'y'": "a text of Python 2",
+    "x = 10L": "a long integer",
+    "x = ur'y'": "a string literal of Python 2",
 }
 
 
@@ -187,7 +187,7 @@ def test_time_without_end_fails_one_unit(tmp_path: Path, monkeypatch: pytest.Mon
     status, _, failures = run(two_nodes(tmp_path), "--max-seconds", "0.5")
     assert status == 0
     assert failures == {
-        "bad": "the analysis took more than 0.5 s (more: --max-seconds)",
+        "bad": "the analysis took more than 0.5 s (--max-seconds raises the limit)",
         "good": None,
     }
 

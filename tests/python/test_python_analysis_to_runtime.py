@@ -1,4 +1,4 @@
-"""From the analysis to reports: what `pytpc analyse` writes is what the hook finds again."""
+"""From the analysis to reports: the hook finds again what `pytpc analyse` writes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner
 
 from pytpc.cli.main import main
-from pytpc.ingest import read
+from pytpc.ingest.reading import read
 from pytpc.static.static_info import StaticInfo
 
 ROOT = Path(__file__).parents[2]
@@ -46,7 +46,7 @@ def main():
 
 @pytest.fixture
 def source(tmp_path: Path) -> Path:
-    """A workspace with a package of a node, and another one of modules; and a fake of ROS."""
+    """A workspace with the package of a node, one of modules, and a fake of ROS."""
     source = tmp_path / "ws/src"
     files = {
         "my_utils/setup.py": "setup(packages=['my_utils'], package_dir={'': 'src'})",
@@ -72,7 +72,7 @@ def source(tmp_path: Path) -> Path:
 def reports(
     folder: Path, script: Path, *modules: Path
 ) -> tuple[str, list[tuple[int, float, float, bool]]]:
-    """What a program prints, and its reports as line, value, threshold and outcome."""
+    """The output of a program, and its reports as line, value, threshold and outcome."""
     environment = {
         **os.environ,
         "TPC_SINK": "file",

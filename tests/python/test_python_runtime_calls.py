@@ -1,4 +1,4 @@
-"""Comparisons inside of library functions: what they report, and that the call is as before."""
+"""Comparisons inside library functions: what they report, and that the calls do not change."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The binary file of Python nodes where there is no disk to write to, and from several threads."""
+"""The binary file of Python nodes on a full disk, and written by several threads."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ for thread in threads: thread.join()
 
 
 def on_a_disk(tmp_path: Path, options: str) -> tuple[subprocess.CompletedProcess[str], Path]:
-    """Run `MANY` with its folder on a file system of its own; what it wrote is copied."""
+    """Run `MANY` with its folder on a file system of its own, and copy what it wrote."""
     disk, copy = tmp_path / "disk", tmp_path / "copy"
     disk.mkdir()
     copy.mkdir()

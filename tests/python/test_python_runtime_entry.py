@@ -1,4 +1,4 @@
-"""Which programs report by the environment: scripts of entry points do, and none of others."""
+"""Programs that report because of the environment: scripts of entry points, and no others."""
 
 from __future__ import annotations
 
@@ -10,9 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from pytpc.ingest import read
-from pytpc.python_runtime.entry import program_of
-from pytpc.python_runtime.listed import names_script, read_table
+from pytpc.ingest.reading import read
+from pytpc.python_runtime.listed import names_script, program_of, read_table
 
 ROOT = Path(__file__).parents[2]
 RUN = str(ROOT / "pytpc/python_runtime/run.py")
@@ -85,7 +84,7 @@ def script(folder: Path, text: str, name: str = "talker_node") -> Path:
 
 
 def run(static: Path, *command: str | Path, cwd: Path | None = None, **more: str) -> str:
-    """What it says; the environment is that of `pytpc env`."""
+    """The output; the environment is that of `pytpc env`."""
     on_path = ROOT / "pytpc/python_runtime/on_path"
     ours = {
         "PYTHONPATH": f"{on_path}{os.pathsep}{static.parent / 'site'}",
@@ -207,7 +206,7 @@ def test_a_static_file_that_is_gone_is_said_and_no_program_ends(static, tmp_path
 
 @pytest.mark.parametrize("where", ["above the script", "above its link", "above this folder"])
 def test_the_workspace_around_a_script_is_found(static, tmp_path, where):
-    """Without --static and TPC_STATIC; said with --verbose, and not without."""
+    """Without --static and TPC_STATIC; it is printed with --verbose only."""
     built = tmp_path / "ws/.tpc/static.json"
     built.parent.mkdir(parents=True)
     static.rename(built)
@@ -239,7 +238,7 @@ def test_a_workspace_that_is_found_broken_ends_no_program(static, tmp_path):
 
 
 def test_a_node_that_is_called_like_the_runner(static, tmp_path):
-    """`pytpc run` in a shell that did `pytpc env`: the runner is not taken for the node."""
+    """`pytpc run` after `pytpc env`: the runner must not be mistaken for the node."""
     document = json.loads(static.read_text())
     document["units"] = [unit(tmp_path / "src/talk", "run", "nodes/run.py")]
     static.write_text(json.dumps(document))

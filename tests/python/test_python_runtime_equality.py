@@ -1,4 +1,4 @@
-"""A program does the same with and without the hook: see `hook_programs`."""
+"""A program does the same with and without the hook (see `hook_programs`)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The binary file of Python nodes, read by the reader of all binary files."""
+"""The binary file of Python nodes, read by the common reader of binary files."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from pytpc.ingest import Recording, read
+from pytpc.ingest.reading import read
+from pytpc.recording.mission import Recording
 
 ROOT = Path(__file__).parents[2]
 PRELUDE = """\
@@ -52,7 +53,7 @@ def recording(folder: Path) -> Recording:
 
 
 def rows(folder: Path) -> list[tuple[str, bool, float, float]]:
-    """Key, result, cmp and thresh of all reports in their order."""
+    """Key, result, cmp and thresh of all reports in order."""
     events = recording(folder).events
     keys = [events.keys[code] for code in events.key]
     columns = (events.result.tolist(), events.cmp.tolist(), events.thresh.tolist())
@@ -264,7 +265,7 @@ def test_edges_killed_in_the_middle_of_a_summary(tmp_path):
         """
         one = site("one")
         over(one, 1, 3)
-        (held,) = RUNTIME._edges._open.values()
+        (kept,) = RUNTIME._edges._open.values()
         class Bytes:
             # Struct's `pack_into` asks for a buffer, and a slice is the summary itself.
             def __init__(self, real): self.real = real
@@ -272,11 +273,11 @@ def test_edges_killed_in_the_middle_of_a_summary(tmp_path):
                 self.real[at] = raw
                 os.kill(os.getpid(), 9)
         import struct
-        from pytpc.python_runtime import file_sink
-        real = held.slot._bytes
-        file_sink.struct = type("", (), {"pack_into": staticmethod(
+        from pytpc.python_runtime import sinks
+        real = kept.slot._bytes
+        sinks.struct = type("", (), {"pack_into": staticmethod(
             lambda form, where, at, value: struct.pack_into(form, real, at, value))})
-        held.slot._bytes = Bytes(real)
+        kept.slot._bytes = Bytes(real)
         over(one, 2, 3)
         """,
         TPC_POLICY="edges",
@@ -311,9 +312,8 @@ def test_caps_count_what_they_drop(tmp_path):
 @pytest.mark.usefixtures("python")
 def test_a_wrong_setting_is_said_and_left_out(tmp_path):
     done = run(tmp_path, 'over(site("one"), 1, 0)', TPC_POLICY="sometimes")
-    assert done.stderr == (
-        "tpc: TPC_POLICY=sometimes is none of every, edges; it is left as it was\n"
-    )
+    warning = "tpc: TPC_POLICY=sometimes is ignored: it must be one of every, edges\n"
+    assert done.stderr == warning
     assert len(rows(tmp_path)) == 1
 
 

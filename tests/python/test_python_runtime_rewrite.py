@@ -1,4 +1,4 @@
-"""What a rewritten program reports, worked out by hand from its text."""
+"""The reports of a rewritten program, worked out by hand from its text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The sink ``rosout``: nothing of it waits for a thread that compares."""
+"""The sink ``rosout`` never waits for a thread that compares."""
 
 from __future__ import annotations
 

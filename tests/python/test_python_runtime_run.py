@@ -1,4 +1,4 @@
-"""Programs that are run with reports: scripts, modules, relays, copies, whole environments."""
+"""Programs that run with reports: scripts, modules, relays, copies, whole environments."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pytest
 from click.testing import CliRunner
 
 from pytpc.cli.main import main
-from pytpc.ingest import read
+from pytpc.ingest.reading import read
 from pytpc.python_runtime.listed import names_script, read_table
 from pytpc.ros.node_program import command_of, interpreter_of
 
@@ -190,7 +190,8 @@ def test_a_changed_file_is_said(package):
     node = package / "nodes/node.py"
     node.write_text(SCRIPT.replace("import sys\n", "import os, sys\nimport re\n"))
     done = run(package, sys.executable, RUNNER, node, "a")
-    assert "analyse it again" in done.stderr
+    said = "does not report: it has changed since it was analysed; run pytpc analyse again"
+    assert done.stderr == f"tpc: {node} {said}\n"
     assert [key for key, *_ in reported(package)] == ["helper of node"]
 
 
@@ -212,7 +213,7 @@ def test_a_relay_of_catkin(package, tmp_path):
 
 
 def keys_of(script: Path, *units: dict) -> list[str]:
-    """The keys that count where ``script`` runs, from static information with these units."""
+    """The keys that apply where ``script`` runs, from static information with these units."""
     static = Path(units[0]["source_root"]) / "units.json"
     static.write_text(json.dumps({"schema": 1, "units": list(units)}))
     table = read_table([str(static)], str(script))
@@ -352,7 +353,7 @@ def test_verbose_says_what_reported_and_what_did_not(package):
     assert said[:3] == [
         f"tpc: {node}: 1 comparison reported, 0 not found",
         f"tpc: {package / 'src/pkg/helper.py'}: 1 comparison reported, 0 not found",
-        "tpc: 1 outcome without a plain truth, kept as values: not reported",
+        "tpc: 1 outcome not reported: testing the truth could run code of the program",
     ]
     assert said[3].startswith("tpc: reports are in ")
     assert len(said) == 4

@@ -1,4 +1,4 @@
-"""What a signal's handler does in the middle of a report is done to the program's own line."""
+"""What a signal handler raises in the middle of a report, the program's own line raises."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from pytpc.python_runtime import sites
 
 
 class Late(Exception):
-    """What a handler of SIGALRM raises."""
+    """The error that a handler of SIGALRM raises."""
 
 
 def raising(*_: object) -> None:
-    """As a handler does that runs within the report."""
+    """Like a handler that runs within the report."""
     raise Late
 
 

@@ -1,4 +1,4 @@
-"""The standard library's own tests have the same results when every comparison in them reports."""
+"""The tests of the standard library have the same results when every comparison reports."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Debuggers, profilers and coverage see the program alone."""
+"""Debuggers, profilers and coverage see only the program."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ print(f(9), f("9" if len(sys.argv) > 1 else 4))
 
 
 def outputs(folder: Path, begin: str, end: str = "", said: str = "", python: str = "") -> list[str]:
-    """What the script writes, plainly and under the hook."""
+    """The output of the script, without and with the hook."""
     script = folder / "node.py"
     script.write_text(SCRIPT.format(begin=begin, end=end))
     places = [

@@ -1,4 +1,4 @@
-"""The lists of the suite of Python nodes stand on their places; the judge looks at columns."""
+"""The lists of the suite of Python nodes name existing places; the judge checks columns."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from static_units import comparison, unit
 
-from pytpc.static.static_info import Comparison, LinkUnit
+from pytpc.static.link_unit import Comparison, LinkUnit
 from suite.expectations import PYTHON_PACKAGE, Entry, Expectation, judge, load, nodes
 from suite.places import comparisons, values
 from suite.python_run import missing_modules, script
@@ -22,7 +22,7 @@ ENTRY = Entry("nodes/a.py", 12, "x > limit", "~limit", "parameter", ">", 1, None
 
 
 def wrong_with(entry: Entry) -> str | None:
-    """What is not right with an entry's place, text or relation."""
+    """What is wrong with an entry's place, text or relation."""
     source = (PYTHON_PACKAGE / entry.file).read_text("utf-8")
     assert entry.column is not None
     place = (entry.line, entry.column)

@@ -1,7 +1,7 @@
-"""The lists of examples/python_nodes are true: turning a comparison shows where they say so.
+"""The lists of examples/python_nodes are true: flipping a comparison shows where they say so.
 
-No analysis is asked: each node runs with every other outcome of one comparison turned, and what it
-exposes is compared with what it exposed before.
+No analysis is involved: each node runs with every other outcome of one comparison flipped, and what
+it exposes is compared with what it exposed before.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ pytestmark = pytest.mark.skipif(
 
 @pytest.fixture(scope="module")
 def shown() -> dict[str, dict[str, bool]]:
-    """For each node, its entries by place, and whether turning one shows."""
+    """For each node its entries by place, and whether flipping one shows."""
     # A process of its own: nodes leave threads and modules behind.
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     ran = subprocess.run(

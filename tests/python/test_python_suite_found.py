@@ -1,4 +1,4 @@
-"""What the analysis finds in examples/python_nodes is what a reader finds."""
+"""The analysis finds in examples/python_nodes what a reader finds."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ from pytpc.build.python_units import PythonUnits, analyse_workspaces, named_besi
 from pytpc.cli.main import main
 from pytpc.python_analysis.analysis import analyse_entry
 from pytpc.python_analysis.rules_file import load_rules
-from pytpc.python_analysis.sources.packages import Entry
+from pytpc.python_analysis.sources.scripts import Entry
 from pytpc.static.link_unit import LinkUnit
 from pytpc.static.static_info import StaticInfo, load_link_unit, unit_files
 from pytpc.workspace.packages import find_packages, packages_up_to

@@ -3,17 +3,17 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from mission_samples import comparison, events, key, ns, static_info
+from mission_samples import SummaryBuilder, comparison, events, key, ns, static_info
 
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
-from pytpc.ingest import Recording
 from pytpc.recording.events import Events
 from pytpc.recording.faults import unknown_keys
 from pytpc.recording.marks import Mark
-from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
+from pytpc.recording.mission import Recording
+from pytpc.recording.summaries import Summaries, Summary
+from pytpc.static.link_unit import Place
 from pytpc.static.parameters import parameter_name
-from pytpc.static.static_info import Place
 
 # Comparisons 0 and 1 are of coverage, 2 of faces, 3 of idle, 4 is a constant, 5 of never (which is
 # never evaluated), 6 of faces too.

@@ -101,8 +101,8 @@ def test_many_at_once_as_one_by_one(lines: list[str]) -> None:
             found = parse_stamped(lines[number])
             assert not isinstance(found, Malformed), lines[number]
             assert part.time_ns is not None
-            assert found.time_ns == part.time_ns[row]
-            report = found.report
+            time_ns, report = found
+            assert time_ns == part.time_ns[row]
             assert report.key == part.keys[part.key[row]]
             assert (report.result, report.res) == (part.result[row], part.res[row])
             assert repr(report.cmp) == repr(float(part.cmp[row]))

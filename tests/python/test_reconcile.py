@@ -8,7 +8,7 @@ from static_units import failed_unit, unit
 
 from pytpc.base.errors import InputError
 from pytpc.build.reconcile import build_folders, left_out_units, remark, stale_files
-from pytpc.static.static_info import LinkUnit
+from pytpc.static.link_unit import LinkUnit
 
 NATIVE = b"\x7fELF rest"
 FULL = b"BC\xc0\xde ... ThinLTO ..."

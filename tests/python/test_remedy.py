@@ -7,7 +7,7 @@ import math
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mission_samples import comparison, events, key, ns, static_info
+from mission_samples import SummaryBuilder, comparison, events, key, ns, static_info
 
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.suggestion.remedy import remedy
@@ -15,8 +15,8 @@ from pytpc.recording.declaration import Declared
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
-from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
-from pytpc.static.static_info import Transform
+from pytpc.recording.summaries import Summaries, Summary
+from pytpc.static.link_unit import Transform
 
 HOLDS = {"<": float.__lt__, ">": float.__gt__, ">=": float.__ge__, "flag": lambda _, t: bool(t)}
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from mission_samples import comparison, events, key, ns, static_info
+from mission_samples import SummaryBuilder, comparison, events, key, ns, static_info
 from report_samples import NASTY, Page, mission, written
 
 from pytpc.api.report import MissionReport, write_missions
@@ -24,7 +24,6 @@ from pytpc.diagnosis.ranking.blame import blame
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.diagnosis.suggestion.advise import join_advice
 from pytpc.diagnosis.suggestion.whole_mission import answer_mission
-from pytpc.ingest import MalformedRecord, Recording
 from pytpc.present.page.series import (
     BINS,
     BOTH,
@@ -39,7 +38,8 @@ from pytpc.present.page.series import (
 )
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark
-from pytpc.recording.summaries import Summary, SummaryBuilder
+from pytpc.recording.mission import MalformedRecord, Recording
+from pytpc.recording.summaries import Summary
 from pytpc.values.origins import Origin
 
 NAN = math.nan

@@ -19,9 +19,9 @@ from selenium.webdriver.support.ui import WebDriverWait
 
 from pytpc.api.report import MissionReport, write_missions
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
-from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
-from pytpc.static.static_info import PathStep
+from pytpc.recording.mission import Recording
+from pytpc.static.link_unit import PathStep
 
 CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
 pytestmark = pytest.mark.skipif(

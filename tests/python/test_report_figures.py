@@ -10,15 +10,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mission_samples import comparison, events, key, ns, static_info
+from mission_samples import SummaryBuilder, comparison, events, key, ns, static_info
 from report_samples import Page, mission, written
 
 from pytpc.api.report import MissionReport
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
-from pytpc.ingest import Recording
 from pytpc.present.page.series import FALSE, TRUE
 from pytpc.recording.marks import Mark
-from pytpc.recording.summaries import Summary, SummaryBuilder
+from pytpc.recording.mission import Recording
+from pytpc.recording.summaries import Summary
 
 NAN = math.nan
 

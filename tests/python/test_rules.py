@@ -5,9 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from pytpc.base.checked_json import parse_json
+from pytpc.base.checked_json import check_rules, parse_json
 from pytpc.base.errors import InputError
-from pytpc.static.rules import check_rules
 
 TABLES = Path(__file__).parents[2] / "passes/rules"
 # What the thesis looks at: the reads by param() with a variable, and three statements.

@@ -115,7 +115,7 @@ def test_answer_of_a_node_is_taken_apart(master, serve):
 
 
 def test_complaint_of_a_node_is_kept(master, serve):
-    said = "the parameter /a/tpc/sink is left out: is none of rosout; sink=off"
+    said = "the parameter /a/tpc/sink is ignored: it must be one of rosout; sink=off"
     master.services["/a/tpc/reload"] = serve(trigger(False, said))
     status = InstrumentedNodes(master.uri).reload("/a")
     assert (status.success, status.message) == (False, said)

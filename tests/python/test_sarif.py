@@ -12,7 +12,8 @@ from pytpc.conditions.cpp_conditions import Condition
 from pytpc.conditions.lookup import Answer
 from pytpc.conditions.sarif import sarif_log
 from pytpc.conditions.tpc_details import details
-from pytpc.static.static_info import LinkUnit, StaticInfo
+from pytpc.static.link_unit import LinkUnit
+from pytpc.static.static_info import StaticInfo
 
 TRANSFORM = {"kind": "affine", "scale": 2.0, "offset": 0.0, "text": "x * 2"}
 

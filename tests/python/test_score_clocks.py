@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from mission_samples import events, ns
 
-from pytpc.ingest import Recording
 from pytpc.recording.faults import two_clocks
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
 
 # 2026-09-21, in seconds since 1970.
 WALL = 1_790_000_000

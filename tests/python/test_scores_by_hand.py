@@ -24,8 +24,8 @@ from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.diagnosis.scores.score_tables import Tpcs, parameter_tables, rank_curves, tpc_scores
 from pytpc.diagnosis.scores.scores import NONE
 from pytpc.diagnosis.scores.summary_scores import LogTables
-from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summaries
 
 ROBOT = static_info(

@@ -9,16 +9,8 @@ from static_units import KEYS, comparison, failed_unit, unit
 
 from pytpc.base.checked_json import MERGED_SCHEMA, check_schema
 from pytpc.base.errors import InputError, WorkspaceError
-from pytpc.static.static_info import (
-    LinkUnit,
-    Place,
-    StaticInfo,
-    Transform,
-    collect,
-    load_link_unit,
-    read_static,
-    unit_files,
-)
+from pytpc.static.link_unit import LinkUnit, Place, Transform
+from pytpc.static.static_info import StaticInfo, collect, load_link_unit, read_static, unit_files
 
 AFFINE = {"kind": "affine", "scale": 0.0174, "offset": 0.0, "text": "x * 0.0174"}
 EXPRESSION = {"kind": "expression", "text": "x^2 + 1", "tree": ["+", ["pow", "x", 2.0], 1.0]}

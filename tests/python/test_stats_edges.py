@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from mission_samples import SECOND, comparison, events, key, static_info
+from mission_samples import SECOND, SummaryBuilder, comparison, events, key, static_info
 
-from pytpc.ingest import Recording
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
-from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
+from pytpc.recording.mission import Recording
+from pytpc.recording.summaries import Summaries, Summary
 from pytpc_evaluation.stats.delays import error_start
 from pytpc_evaluation.stats.missions import StudyMission
 from pytpc_evaluation.stats.runtime import runtime_statistics

@@ -13,9 +13,9 @@ from matplotlib.colors import to_hex
 from mission_samples import comparison, events, ns, static_info
 
 from pytpc.diagnosis.scores.score_tables import rank_curves
-from pytpc.ingest import Recording
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
 from pytpc_evaluation.stats.bars import runtime_bars
 from pytpc_evaluation.stats.curves import NAMED, mission_figure
 from pytpc_evaluation.stats.drawing import COLOURS, CULPRIT, save, style

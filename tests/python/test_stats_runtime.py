@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from mission_samples import comparison, events, key, ns, static_info
+from mission_samples import SummaryBuilder, comparison, events, key, ns, static_info
 
-from pytpc.ingest import Recording
 from pytpc.recording.events import Events
-from pytpc.recording.summaries import Summary, SummaryBuilder
+from pytpc.recording.mission import Recording
+from pytpc.recording.summaries import Summary
 from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.stats.runtime import runtime_statistics, runtime_table
 

@@ -7,13 +7,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from mission_samples import comparison, events, key, ns, static_info
+from mission_samples import SummaryBuilder, comparison, events, key, ns, static_info
 
 from pytpc.base.errors import InputError
-from pytpc.ingest import Recording, save_recording
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
-from pytpc.recording.summaries import Summary, SummaryBuilder
+from pytpc.recording.mission import Recording, save_recording
+from pytpc.recording.summaries import Summary
 from pytpc.static.link_unit import Transform
 from pytpc_evaluation.stats.delays import delays_of, error_start
 from pytpc_evaluation.stats.found import found_in, found_table

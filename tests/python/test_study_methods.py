@@ -11,8 +11,8 @@ from mission_samples import comparison, events, ns, static_info
 
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.ranking.posterior import diagnose_log
-from pytpc.ingest import Recording, save_recording
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording, save_recording
 from pytpc.recording.parameter_change import Change
 from pytpc_evaluation.study.case import Case
 from pytpc_evaluation.study.data import Mission, UserMark, missions

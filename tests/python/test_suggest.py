@@ -8,11 +8,11 @@ import pytest
 from asking import OPERATORS, ask, suggested
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from mission_samples import comparison, events, key, link_unit, ns
+from mission_samples import SummaryBuilder, comparison, events, key, link_unit, ns
 
 from pytpc.base.wording import exact, show
-from pytpc.recording.summaries import Summary, SummaryBuilder
-from pytpc.static.static_info import ParameterRead, Transform
+from pytpc.recording.summaries import Summary
+from pytpc.static.link_unit import ParameterRead, Transform
 
 NAN, INF = math.nan, math.inf
 

@@ -31,7 +31,7 @@ from asking import suggested
 from mission_samples import comparison, events
 
 from pytpc.diagnosis.thresholds.intervals import words
-from pytpc.static.static_info import Transform
+from pytpc.static.link_unit import Transform
 
 WAYS = {
     "x": (None, 25.0),

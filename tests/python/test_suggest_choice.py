@@ -13,7 +13,7 @@ from mission_samples import comparison, events, link_unit
 from pytpc.diagnosis.suggestion.choice import Choice, Possible, choose, readable
 from pytpc.diagnosis.thresholds.intervals import Interval, words
 from pytpc.recording.declaration import Declared
-from pytpc.static.static_info import ParameterRead
+from pytpc.static.link_unit import ParameterRead
 
 
 def declared(type_="double", low=None, high=None, **changes):

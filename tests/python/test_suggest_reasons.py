@@ -8,7 +8,7 @@ import pytest
 from asking import ask, suggested
 from mission_samples import comparison, events
 
-from pytpc.static.static_info import Transform
+from pytpc.static.link_unit import Transform
 
 NAN, INF = math.nan, math.inf
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from static_units import comparison, unit
 
-from pytpc.static.static_info import Comparison, LinkUnit
+from pytpc.static.link_unit import Comparison, LinkUnit
 from suite.expectations import PACKAGE, Entry, Expectation, judge, load, nodes
 
 ENTRY = Entry("nodes/a.cpp", 12, "x > limit", "limit", "parameter", ">", 1, None, "")

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from mission_samples import events, key, ns
+from mission_samples import EventBuilder, SummaryBuilder, events, key, ns
 
 from pytpc.diagnosis.scores.scores import NONE, Formula, type1, type2
 from pytpc.diagnosis.scores.summary_scores import LogTables, type2_of_summaries
-from pytpc.recording.events import EventBuilder, Events, Report
-from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
+from pytpc.recording.events import Events, Report
+from pytpc.recording.summaries import Summaries, Summary
 
 NAN, INF = math.nan, math.inf
 

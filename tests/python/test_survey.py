@@ -10,7 +10,7 @@ from static_units import KEYS, comparison, failed_unit, unit
 from survey_samples import AFTER, BAD, build, found, result
 
 from pytpc.base.errors import InputError
-from pytpc.static.static_info import LinkUnit
+from pytpc.static.link_unit import LinkUnit
 from pytpc_evaluation.survey.static_tables import tables
 from pytpc_evaluation.survey.trees import (
     Tree,

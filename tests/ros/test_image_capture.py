@@ -18,7 +18,7 @@ import pytest
 from pytpc.base.errors import MissingToolError, RunError
 from pytpc.base.paths import cmake_file, log_library, plugin
 from pytpc.build.build import BuildResult, workspace_env
-from pytpc.ingest import read_bag
+from pytpc.ingest.reading import read
 from pytpc.recording.faults import unknown_keys
 from pytpc.ros.mission_run import MISSION_DONE, Progress, RecordOptions
 from pytpc.ros.ros1.graph import GRAPH_WORD, RosGraph
@@ -181,7 +181,7 @@ def test_node_that_dies_ends_the_mission_with_one_line(env, tmp_path):
     assert "mission" in text and "has died" in text
     assert not (tmp_path / "run.json").exists()
     # What was recorded until then is kept, and is a whole bag.
-    assert read_bag(tmp_path / "mission.bag").end_ns > SECOND
+    assert read(tmp_path / "mission.bag").end_ns > SECOND
 
 
 def test_broken_launch_file_is_one_line(env, tmp_path):

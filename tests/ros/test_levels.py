@@ -7,7 +7,7 @@ from pathlib import Path
 
 from conftest import build_example
 from pytpc.build.build import BuildResult
-from pytpc.static.static_info import Comparison, PathStep
+from pytpc.static.link_unit import Comparison, PathStep
 
 
 def test_finds_the_same_without_optimisation(built: BuildResult, tmp_path: Path) -> None:

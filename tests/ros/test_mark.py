@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from pytpc.ingest import read
+from pytpc.ingest.reading import read
 from pytpc.recording.marks import Mark, read_marks
 from pytpc.ros.ros1.graph import GraphProcess, RosGraph
 from pytpc.ros.ros1.master import Master

@@ -18,7 +18,7 @@ from click.testing import CliRunner
 from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import SYSTEM_PATH, cmake_file, log_library, plugin, require_ros
 from pytpc.cli.main import main
-from pytpc.ingest import read
+from pytpc.ingest.reading import read
 from pytpc.ros.ros1.graph import RosGraph
 from pytpc.static.static_info import StaticInfo
 

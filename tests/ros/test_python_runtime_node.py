@@ -15,7 +15,7 @@ import pytest
 from click.testing import CliRunner
 
 from pytpc.cli.main import main
-from pytpc.ingest import read
+from pytpc.ingest.reading import read
 from pytpc.ros.ros1.graph import RosGraph
 
 PYTHON = "/usr/bin/python3"

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from pytpc.base.errors import MissingToolError
-from pytpc.ingest import Dropped, load_recording
+from pytpc.recording.mission import Dropped, load_recording
 from pytpc.ros.mission_run import Progress
 from pytpc.ros.ros1 import launch_mission
 from pytpc.ros.ros1.graph import RosGraph

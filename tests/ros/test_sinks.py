@@ -24,7 +24,7 @@ from click.testing import CliRunner
 from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import log_library, prefix, project_root
 from pytpc.cli.main import main
-from pytpc.ingest import read_bag
+from pytpc.ingest.reading import read
 from pytpc.ingest.ros1 import decode_log, decode_string
 from pytpc.ros.ros1.graph import GraphProcess, RosGraph
 from pytpc.ros.ros1.instrumented_nodes import InstrumentedNodes
@@ -510,7 +510,7 @@ def test_relay_passes_on_and_a_bag_of_both_topics_has_each_report_once(graph, no
     graph.stop(passer)
     assert "2,000 reports passed on\n" in passer.log.read_text()
     assert json.loads(status.read_text())["messages"][TOPIC] == 2000
-    recording = read_bag(bag)
+    recording = read(bag)
     assert len(recording.events) == made(process)["running"] == 2000
     assert recording.events.cmp.tolist() == [float(i) for i in range(2000)]
     assert recording.malformed == 0 and recording.lost == {}

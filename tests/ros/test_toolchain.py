@@ -14,14 +14,15 @@ from click.testing import CliRunner
 from test_build_workspace import make_package
 
 from pytpc.base.errors import MissingToolError
-from pytpc.base.paths import cmake_file, log_library, mixin_index, plugin
+from pytpc.base.paths import cmake_file, installed, log_library, plugin
 from pytpc.cli.main import main
 from pytpc.static.static_info import collect
 from pytpc.workspace.colcon import build_environment
 
 try:
-    for half in (cmake_file, plugin, log_library, mixin_index):
+    for half in (cmake_file, plugin, log_library):
         half()
+    installed("share/tpc/colcon/index.yaml")
 except MissingToolError as error:
     pytest.skip(f"the C++ half is not installed: {error}", allow_module_level=True)
 

@@ -13,17 +13,19 @@ from pathlib import Path
 import pytest
 
 from pytpc.base.errors import MissingToolError
-from pytpc.base.paths import cmake_file, compiler_wrapper, log_library, plugin
+from pytpc.base.paths import cmake_file, installed, log_library, plugin
 from pytpc.build.build import build_workspace, workspace_env
 from pytpc.build.collect import collect_sources
 from pytpc.ros.ros1.graph import RosGraph
-from pytpc.static.static_info import LeftOut, StaticInfo
+from pytpc.static.link_unit import LeftOut
+from pytpc.static.static_info import StaticInfo
 from pytpc.workspace import patch
 from pytpc.workspace.colcon import Bases, BuildOptions, build_environment
 
 try:
-    for half in (cmake_file, compiler_wrapper, plugin, log_library):
+    for half in (cmake_file, plugin, log_library):
         half()
+    installed("bin/tpc-clang++")
 except MissingToolError as error:
     pytest.skip(f"the C++ half is not installed: {error}", allow_module_level=True)
 
@@ -251,7 +253,7 @@ def test_the_compiler_wrappers_find_the_same(
     by_colcon: StaticInfo, sources: Path, variables: dict[str, str], tmp_path: Path
 ) -> None:
     """CC and CXX alone: nothing is patched, and CMake knows nothing of TPC."""
-    wrapper = compiler_wrapper()
+    wrapper = installed("bin/tpc-clang++")
     environment = {
         **variables,
         "CC": str(wrapper.with_name("tpc-clang")),

@@ -10,14 +10,16 @@ from pathlib import Path
 import pytest
 
 from pytpc.base.errors import MissingToolError
-from pytpc.base.paths import compiler_wrapper, log_library, plugin, prefix
+from pytpc.base.paths import installed, log_library, plugin, prefix
 from pytpc.ros.ros1.graph import RosGraph
-from pytpc.static.static_info import LinkUnit, collect
+from pytpc.static.link_unit import LinkUnit
+from pytpc.static.static_info import collect
 from pytpc.workspace.colcon import build_environment
 
 try:
-    for half in (compiler_wrapper, plugin, log_library):
+    for half in (plugin, log_library):
         half()
+    WRAPPER = installed("bin/tpc-clang++")
 except MissingToolError as error:
     pytest.skip(f"the C++ half is not installed: {error}", allow_module_level=True)
 
@@ -244,7 +246,7 @@ def test_ccache_goes_before_the_wrapper(tmp_path: Path) -> None:
     (folder / "Makefile").write_text(MAKEFILE, encoding="utf-8")
     more = {
         "CCACHE_DIR": str(tmp_path / "cache"),
-        "CXX": f"ccache {compiler_wrapper()}",
+        "CXX": f"ccache {WRAPPER}",
         "CCACHE_EXTRAFILES": str(prefix() / "lib/tpc/TpcDefer.so"),
     }
     run(["make", "whole"], folder, **more)
@@ -261,7 +263,7 @@ def test_ccache_goes_before_the_wrapper(tmp_path: Path) -> None:
 def test_no_path_of_the_wrapper_is_needed(tmp_path: Path) -> None:
     folder = tmp_path / "elsewhere"
     folder.mkdir()
-    (folder / "tpc-clang++").symlink_to(compiler_wrapper())
+    (folder / "tpc-clang++").symlink_to(WRAPPER)
     (folder / "a.cpp").write_text("int main() {}\n", encoding="utf-8")
     path = f"{folder}{os.pathsep}{build_environment()['PATH']}"
     run(["tpc-clang++", "a.cpp", "-o", "a"], folder, PATH=path)

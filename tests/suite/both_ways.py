@@ -27,8 +27,8 @@ import genpy
 from genpy.dynamic import generate_dynamic
 
 from pytpc.base.errors import RunError
+from pytpc.ingest.ros1 import decode_log
 from pytpc.ros.ros1.graph import GraphProcess, RosGraph
-from pytpc.ros.ros1.losses import LossCounter
 from pytpc.ros.ros1.master import Master
 from pytpc.ros.ros1.subscriber import RawSubscriber, Source
 from suite.expectations import PACKAGE, load
@@ -297,7 +297,7 @@ class _Batch:
                 data = timeless(source.type, source.definition, data)
             result.topics.setdefault(rest[0], []).append(data)
             return True
-        result.reports += LossCounter().see(data).startswith(_REPORT)
+        result.reports += decode_log(data).msg.startswith(_REPORT)
         return False
 
     def _different(self) -> Iterator[str]:

@@ -21,7 +21,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from pytpc.static.static_info import Comparison
+from pytpc.static.link_unit import Comparison
 
 PACKAGE = Path(__file__).parents[2] / "examples/threshold_nodes"
 PYTHON_PACKAGE = PACKAGE.with_name("python_nodes")

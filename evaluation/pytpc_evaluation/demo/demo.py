@@ -19,9 +19,9 @@ from pytpc.base.errors import RunError
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.diagnosis.suggestion.smallest_change import At, smallest_change
-from pytpc.ingest import Recording, read_bag, save_recording
+from pytpc.ingest.reading import read
 from pytpc.recording.marks import Mark
-from pytpc.recording.mission import EVENTS_FILE, MARKS_FILE
+from pytpc.recording.mission import EVENTS_FILE, MARKS_FILE, Recording, save_recording
 from pytpc.ros.mission_run import MISSION_DONE, MissionRun, Progress, RecordOptions
 from pytpc.ros.ros1.launch_mission import run_mission
 from pytpc.static.static_info import StaticInfo
@@ -109,7 +109,7 @@ def run_treatment(
     )
     run = run_mission(install_env, options)
     save_treatment(treatment, out_dir)
-    recording = read_bag(run.bag)
+    recording = read(run.bag)
     if not len(recording.events):
         raise RunError("no node reported a comparison: was the workspace built with TPC?", run.bag)
     save_recording(recording, out_dir)

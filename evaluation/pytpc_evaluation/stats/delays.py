@@ -24,8 +24,9 @@ from pytpc.recording.faults import CLOCKS_APART_NS
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summaries
 from pytpc.static.arithmetic import evaluate
+from pytpc.static.link_unit import Comparison
 from pytpc.static.parameters import parameter_name, same_parameter
-from pytpc.static.static_info import Comparison, StaticInfo
+from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.stats.missions import StudyMission, Trial, user_of
 from pytpc_evaluation.tables import Cell, Column, Table, statistics
 from pytpc_evaluation.treatment import Treatment

@@ -21,7 +21,7 @@ import pyarrow as pa
 
 from pytpc.base.columns import Floats, read_table
 from pytpc.base.errors import InputError, TpcError
-from pytpc.ingest.topics import BagTopics, open_topics
+from pytpc_evaluation.stats.topics import BagTopics, open_topics
 
 _POSES = {
     "geometry_msgs/msg/PoseStamped": "pose",

@@ -17,9 +17,9 @@ from pytpc.recording.mission import (
     MARKS_FILE,
     REPORTS_FOLDER,
     Recording,
-    read_marks,
+    read_marks_json,
     save_recording,
-    write_marks,
+    write_marks_json,
 )
 from pytpc.ros.mission_run import MISSION_DONE, Progress, RecordOptions
 from pytpc.ros.ros1.launch_mission import run_mission
@@ -106,9 +106,9 @@ class Flier:
         # Whatever happens from here on, the mission is not whole.
         _remove(folder / DONE_FILE)
         if before is not None and before.flight == flown and _has(folder, _OF_FLIGHT):
-            recording, events, summaries = read_marks(folder)
+            recording, events, summaries = read_marks_json(folder)
             causes, marks = self._mark(flight, folder)
-            write_marks(replace(recording, marks=marks), folder, events, summaries)
+            write_marks_json(replace(recording, marks=marks), folder, events, summaries)
             remarks = remarks_of(flight, causes, reached=before.reached)
             done = replace(
                 before, marked=marked, causes=len(causes), marks=len(marks), remarks=remarks

@@ -19,10 +19,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pytpc.base.errors import InputError, RunError, TpcError, WorkspaceError
-from pytpc.base.paths import BUILD_TOOLS, accepting_flags, cmake_file, require_tools
+from pytpc.base.paths import BUILD_TOOLS, cmake_file, installed, require_tools
 from pytpc.base.wording import plain
 from pytpc.build.faults import first_error, missing_names
-from pytpc.static.static_info import LinkUnit, load_link_unit, unit_files
+from pytpc.static.link_unit import LinkUnit
+from pytpc.static.static_info import load_link_unit, unit_files
 from pytpc.workspace.cmake_syntax import find_fault
 from pytpc.workspace.cmake_targets import ask_for_targets, link_targets
 from pytpc.workspace.colcon import (
@@ -205,7 +206,10 @@ def _for_builds(environment: Mapping[str, str], jobs: int) -> dict[str, str]:
     """The environment with the number of jobs, without ccache and with flags for both builds."""
     changed = {**environment, "MAKEFLAGS": f"-j{jobs}", "CCACHE_DISABLE": "1"}
     # Else packages of ROS and Boost 1.74 would build with gcc and TPC, and not with clang alone.
-    accepted = " ".join(accepting_flags())
+    flags = installed("share/tpc/flags").read_text("utf-8").splitlines()
+    accepted = " ".join(
+        line.removeprefix("accept ") for line in flags if line.startswith("accept ")
+    )
     for name in ("CFLAGS", "CXXFLAGS"):
         changed[name] = f"{accepted} {changed.get(name, '')}".strip()
     return changed

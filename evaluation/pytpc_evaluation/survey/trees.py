@@ -15,7 +15,7 @@ from typing import Any
 
 from pytpc.base.checked_json import check_schema
 from pytpc.base.errors import InputError
-from pytpc.static.static_info import LinkUnit
+from pytpc.static.link_unit import LinkUnit
 from pytpc_evaluation.survey.source_lines import LineCount, SourceLines
 
 RESULT_VERSION = 2

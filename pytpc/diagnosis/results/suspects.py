@@ -11,8 +11,8 @@ from typing import NamedTuple, TypeVar
 
 from pytpc.base.wording import percent
 from pytpc.recording.marks import Mark, MarkType
+from pytpc.static.link_unit import Comparison
 from pytpc.static.parameters import same_parameter
-from pytpc.static.static_info import Comparison
 
 Named = TypeVar("Named", "Suspect", "Accused")
 

@@ -31,7 +31,7 @@ from pytpc.diagnosis.scores.scores import NEVER, Before, not_negative
 from pytpc.diagnosis.scores.summary_scores import LogTables
 from pytpc.recording.events import Events, Floats
 from pytpc.recording.marks import Mark
-from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
+from pytpc.recording.summaries import Summaries, Summary
 from pytpc.static.static_info import StaticInfo
 
 LATE_S = 10.0
@@ -101,7 +101,7 @@ class LiveScores:
         thresh: float,
         res: bool,
     ) -> None:
-        """Take in a report, as `pytpc.recording.events.EventBuilder.add` does."""
+        """Take in a report."""
         streams = self._streams.get(key)
         if streams is None:
             return
@@ -212,7 +212,7 @@ class LiveScores:
         return _table(parts, words, self.tpcs.keys)
 
     def _kept_summaries(self, mark_ns: int, before: Before) -> Summaries:
-        builder = SummaryBuilder()
+        kept: list[Summary] = []
         every = [(key, stream) for key, of in self._summaries.items() for stream in of.values()]
         for key, stream in every:
             if stream.forgotten_ns > NEVER:
@@ -222,9 +222,8 @@ class LiveScores:
                 code = self._codes[key]
                 before.highest[code] = max(before.highest[code], stream.highest)
                 before.lowest[code] = min(before.lowest[code], stream.lowest)
-            for summary in stream.kept:
-                builder.add(summary)
-        return builder.build() if len(builder) else Summaries.empty()
+            kept += stream.kept
+        return Summaries.of_rows(kept)
 
     def _check_kept(self, forgotten_ns: int, mark_ns: int, key: str) -> None:
         if forgotten_ns >= mark_ns - self._window_ns:
@@ -232,7 +231,7 @@ class LiveScores:
 
 
 def _table(parts: list[Rows], words: list[tuple[int, str]], keys: Sequence[str]) -> Events:
-    """Events in the order in which an `EventBuilder` would have them; ``words`` of each part."""
+    """Events in the order in which they were added; ``words`` of each part."""
     if not parts:
         return Events.empty(keys)
     nodes = sorted({node for _, node in words})

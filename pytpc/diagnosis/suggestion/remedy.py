@@ -48,7 +48,8 @@ from pytpc.diagnosis.thresholds.units import NoUnitError
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import MARK_TYPES, Mark, MarkType
 from pytpc.recording.mission import Recording
-from pytpc.static.static_info import Default, StaticInfo
+from pytpc.static.link_unit import Default
+from pytpc.static.static_info import StaticInfo
 
 NAMES: dict[Source, str] = {
     "reference": "the value of the good run",

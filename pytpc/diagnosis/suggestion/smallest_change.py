@@ -47,8 +47,9 @@ from pytpc.recording.declaration import Declared
 from pytpc.recording.events import Bools, Floats
 from pytpc.recording.marks import MarkType
 from pytpc.recording.mission import Recording
+from pytpc.static.link_unit import Comparison
 from pytpc.static.parameters import parameter_name
-from pytpc.static.static_info import Comparison, StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 
 class At(NamedTuple):

@@ -28,7 +28,8 @@ from pytpc.recording.events import Floats
 from pytpc.recording.faults import faults_of
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
-from pytpc.static.static_info import Comparison, StaticInfo
+from pytpc.static.link_unit import Comparison
+from pytpc.static.static_info import StaticInfo
 
 # The most steps of the curves, and the most numbers that are worked out for them.
 _STEPS = 6000

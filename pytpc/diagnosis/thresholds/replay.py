@@ -16,8 +16,9 @@ from pytpc.diagnosis.thresholds.units import NoUnitError, is_text, read_type, tr
 from pytpc.recording.events import Events
 from pytpc.recording.summaries import Summaries
 from pytpc.static.arithmetic import Tree, evaluate
+from pytpc.static.link_unit import Comparison
 from pytpc.static.parameters import parameter_name, same_parameter
-from pytpc.static.static_info import Comparison, StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 _ALL = slice(None)
 _SLACK_NS = 100_000_000

@@ -19,7 +19,7 @@ from pytpc.present.page.series import PlotData, plot_data
 from pytpc.present.page.source import LONGEST_LINE, Line, StepView, source_lines, way_of
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark
-from pytpc.static.static_info import Comparison
+from pytpc.static.link_unit import Comparison
 from pytpc.values.origins import Origin, origin_for
 
 

@@ -7,7 +7,8 @@ from pathlib import Path
 
 from pytpc.base.source_bytes import source_bytes
 from pytpc.static.explanations import where
-from pytpc.static.static_info import Comparison, StaticInfo
+from pytpc.static.link_unit import Comparison
+from pytpc.static.static_info import StaticInfo
 
 LONGEST_LINE = 160
 """Longer lines are cut."""

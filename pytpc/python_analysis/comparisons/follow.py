@@ -9,9 +9,8 @@ from pytpc.python_analysis.comparisons.outcomes import Outcomes
 from pytpc.python_analysis.comparisons.reads import Read
 from pytpc.python_analysis.comparisons.transform import How, by_function, by_operator
 from pytpc.python_analysis.flow.constants import DYNAMIC, Constants
-from pytpc.python_analysis.flow.contexts import Stack, moves
 from pytpc.python_analysis.flow.library_calls import INSIDE, Inside, compared_inside
-from pytpc.python_analysis.flow.value_flow import Flow
+from pytpc.python_analysis.flow.value_flow import Flow, Stack
 from pytpc.python_analysis.ir.instructions import Instr
 from pytpc.python_analysis.rules_file import Rules
 
@@ -29,8 +28,8 @@ _TAKING = {"get", "pop", "setdefault"}
 class Fact:
     """``at`` has the value of the parameter ``name``, after ``how``.
 
-    ``before`` is the fact that it follows from, ``via`` the store or call that brought it, and
-    ``stack`` the calls by which it came into its function.
+    ``before`` is the fact that it follows from, ``via`` the store or call that brought the value,
+    and ``stack`` the calls by which it came into its function.
     """
 
     at: Instr
@@ -46,7 +45,7 @@ class Fact:
 class Compared:
     """A comparison ``at`` with the operand number ``operand``, or one of the kinds above.
 
-    ``inside``: it is in the library function that ``at`` calls.
+    ``inside``: the library function that ``at`` calls makes the comparison.
     """
 
     at: Instr
@@ -56,26 +55,19 @@ class Compared:
     predicates: list[Instr] = field(default_factory=list)
 
 
-@dataclass(eq=False, slots=True)
-class Lost:
-    """Where a parameter's value, or a comparison's outcome, is not followed any further."""
-
-    at: Instr
-    fact: Fact
-    is_outcome: bool = False
-
-
 class Follower:
-    """Follows values from reads; ``compared`` and ``lost`` are what is found."""
+    """Follows values from reads; ``compared`` and ``lost`` are the results.
+
+    ``lost``: where a parameter's value is not followed any further.
+    """
 
     def __init__(self, flow: Flow, constants: Constants, rules: Rules) -> None:
-        """Nothing is followed yet."""
         self.flow = flow
         self.constants = constants
         self.rules = rules
         self.facts: dict[Instr, list[Fact]] = {}
         self.compared: dict[tuple[Instr, int, int, str, Stack], Compared] = {}
-        self.lost: dict[Instr, Lost] = {}
+        self.lost: dict[Instr, Fact] = {}
         self._inside: dict[Instr, dict[int, Inside]] = {}
         self.outcomes = Outcomes(flow, constants, rules)
         self._waiting: deque[Fact] = deque()
@@ -107,7 +99,7 @@ class Follower:
         self._reach(Fact(at, fact.read, fact.name, how or fact.how, fact.stack, fact, via))
 
     def _step(self, fact: Fact) -> None:
-        for to, via, stack in moves(self.flow, fact.at, fact.stack):
+        for to, via, stack in self.flow.moves(fact.at, fact.stack):
             if to.op == "attr" and self.flow.is_by_unknown_name(to, via):
                 continue
             if via is not None and (fact.at, via) in self.flow.points.spread:
@@ -161,7 +153,7 @@ class Follower:
                 pass
 
     def _lose(self, fact: Fact, at: Instr) -> None:
-        self.lost.setdefault(at, Lost(at, fact))
+        self.lost.setdefault(at, fact)
 
     def _binary(self, fact: Fact, user: Instr) -> None:
         left, right = user.args
@@ -234,7 +226,7 @@ class Follower:
         self._unpacked(fact, user)
 
     def _unpacked(self, fact: Fact, call: Instr) -> None:
-        """``f(x, **table)``: each entry comes to the parameter of its name, if it is free."""
+        """``f(x, **table)``: each entry comes to the parameter of its name if that is free."""
         names = getattr(call.data, "names", ())
         if not any(n == "**" and v is fact.at for n, v in zip(names, call.args[1:], strict=True)):
             return
@@ -274,7 +266,7 @@ class Follower:
                     self._named(fact, part, [DYNAMIC])
 
     def _argument(self, fact: Fact, user: Instr, path: str) -> None:
-        """A value that is handed to a function outside the sources."""
+        """A value that is passed to a function outside the sources."""
         if (fact.at, user) in self.flow.points.spread:
             return
         if path in self.rules.comparisons and self._compare_inside(fact, user):
@@ -304,7 +296,7 @@ class Follower:
         self._arithmetic(fact, user, how)
 
     def _compare_inside(self, fact: Fact, call: Instr) -> bool:
-        """A comparison inside of a library function; True where its result is the outcome."""
+        """A comparison inside a library function; true where the function returns the outcome."""
         if call not in self._inside:
             self._inside[call] = compared_inside(self.flow, call)
         is_outcome = False
@@ -359,10 +351,10 @@ class Follower:
                 ]
 
     def _drop_measured(self) -> None:
-        """What is measured, and cut to a parameter, is measured: no threshold is lost there."""
-        for call, lost in list(self.lost.items()):
+        """A measurement that is clamped to a parameter is still one: nothing is lost there."""
+        for call, fact in list(self.lost.items()):
             for place, inside in self._inside.get(call, {}).items():
-                is_bound = call.args[1 + place] is lost.fact.at
+                is_bound = call.args[1 + place] is fact.at
                 if is_bound and not any(other in self.facts for other in inside.others):
                     del self.lost[call]
                     break

@@ -1,38 +1,36 @@
-"""The threshold predicate comparisons: what the two ways, forward and backward, agree on."""
+"""The threshold predicate comparisons: those that both ways, forward and backward, lead to."""
 
 from __future__ import annotations
 
 import ast
-import hashlib
-import uuid
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Literal
 
 from pytpc.python_analysis.comparisons.follow import FLAG, Compared, Fact, Follower
-from pytpc.python_analysis.comparisons.reads import Read
 from pytpc.python_analysis.comparisons.slicing import Slice
-from pytpc.python_analysis.flow.contexts import Stack
+from pytpc.python_analysis.flow.constants import Constants
 from pytpc.python_analysis.flow.library_calls import INSIDE, TURNED, Inside
-from pytpc.python_analysis.ir.instructions import Instr
+from pytpc.python_analysis.flow.value_flow import Stack
+from pytpc.python_analysis.ir.instructions import Instr, Variable
+from pytpc.python_analysis.ir.names import named_variable
 
 RELATIONS = {
     "Lt": "<", "LtE": "<=", "Gt": ">", "GtE": ">=", "Eq": "==", "NotEq": "!=",
     "Is": "==", "IsNot": "!=", "In": "==", "NotIn": "!=",
 }  # fmt: skip
 _ALL_KINDS = 3
-_NAMESPACE = bytes.fromhex("6b0f7a522c9e4d619a378f15c3405ed8")
 
 
 Span = tuple[tuple[int, int], tuple[int, int]]
-"""Line and column of the first character and of the one behind the last, from 1."""
+"""Line and column of the first character, and of the one after the last, from 1."""
 
 
 @dataclass
 class Found:
-    """A comparison with one parameter: at one place of the source, for all its copies in blocks.
+    """A comparison with one parameter at one place of the source, for all its copies in blocks.
 
-    Of one with a constant ``parameter`` is its name, and there are no ``facts``.
+    For a comparison with a constant, ``parameter`` is the constant's name and ``facts`` is empty.
     """
 
     at: Instr
@@ -50,11 +48,6 @@ class Found:
         return span_of(self.at, self.operand)
 
     @property
-    def reads(self) -> list[Read]:
-        """The reads that give it its value."""
-        return list(dict.fromkeys(fact.read for fact in self.facts))
-
-    @property
     def relation(self) -> str:
         """The operator, with the threshold on the right-hand side."""
         if self.inside is not None:
@@ -66,7 +59,7 @@ class Found:
 
     @property
     def threshold(self) -> Instr:
-        """What the parameter's value is compared as."""
+        """The value that is the threshold."""
         if self.inside is not None:
             return self.at.args[1 + INSIDE - self.operand]
         return self.at.args[self.operand] if self.operand >= 0 else self.at
@@ -89,13 +82,8 @@ class Found:
 
 
 def position(instr: Instr) -> tuple[int, int]:
-    """Line and column from 1; 0 where there is none."""
+    """Line and column from 1; 0 where the instruction has none."""
     return _start(instr.node)
-
-
-def end_position(instr: Instr) -> tuple[int, int]:
-    """Line and column behind the last character, from 1."""
-    return _end(instr.node)
 
 
 def span_of(at: Instr, operand: int) -> Span:
@@ -120,17 +108,10 @@ def _end(node: ast.AST) -> tuple[int, int]:
     return getattr(node, "end_lineno", 0), getattr(node, "end_col_offset", -1) + 1
 
 
-def key_of(parts: list[str]) -> uuid.UUID:
-    """The key of a comparison: a UUID of version 5, as the passes make it."""
-    digest = hashlib.sha1(_NAMESPACE + "\n".join(parts).encode(), usedforsecurity=False).digest()
-    return uuid.UUID(bytes=digest[:16], version=5)
-
-
 class Gatherer:
-    """Joins comparisons of one place, and drops those that are none of a parameter."""
+    """Joins the comparisons of each place, and drops those whose threshold is not a parameter."""
 
     def __init__(self, follower: Follower, found: Slice) -> None:
-        """Both ways are done."""
         self.follower = follower
         self.slice = found
         self._kinds: dict[tuple[Instr, Stack], frozenset[str]] = {}
@@ -162,11 +143,11 @@ class Gatherer:
         return exposed, others
 
     def constants(self, candidates: Iterable[Found], taken: Iterable[Found]) -> list[Found]:
-        """Of comparisons with constants those that decide something exposed.
+        """The comparisons with constants that decide something exposed.
 
         Args:
             candidates: all of them.
-            taken: the comparisons with parameters, which count as those alone.
+            taken: the comparisons with parameters, which count only as such.
         """
         with_parameter = {each.at.node for each in taken}
         return [
@@ -193,9 +174,9 @@ class Gatherer:
         return True
 
     def _is_measured(self, compared: Compared, both: set[Instr]) -> bool:
-        """True where the parameter is only one of the things that the operand may be.
+        """True where the operand may be a parameter, and may be something else.
 
-        What may be something measured is the threshold only where the other side is measured, too.
+        An operand that may be measured is the threshold only if the other side is measured, too.
         """
         stack = compared.fact.stack
         if compared.inside is not None:
@@ -211,10 +192,10 @@ class Gatherer:
         return other <= {"const"} or (compared.at in both and "other" not in other)
 
     def kinds(self, instr: Instr, stack: Stack) -> frozenset[str]:
-        """What a value may come from, in a function called by ``stack``.
+        """Where a value may come from, in a function that ``stack`` calls.
 
         Returns:
-            Of ``param``, ``const`` and ``other`` those that are possible.
+            Those of ``param``, ``const`` and ``other`` that are possible.
         """
         way = (instr, stack)
         if way not in self._kinds:
@@ -234,17 +215,18 @@ class Gatherer:
         return self._kinds[way]
 
     def _step(self, instr: Instr, stack: Stack) -> tuple[set[str], list[tuple[Instr, Stack]]]:
-        """What a value is by itself, and the values that it may come from."""
+        """What a value is itself, and the values that it may come from."""
         facts = self.follower.facts.get(instr, ())
         if any(fact.before is None or fact.before.name != fact.name for fact in facts):
             return {"param"}, []
+        calls = self.follower.flow.points.calls
         values: Iterable[Instr] = ()
         match instr.op:
             case "const" | "function" | "class" | "module" | "external":
                 return {"const"}, []
             case "binary" | "unary" | "copy":
                 return set(), [(value, stack) for value in instr.args]
-            case "call" if not self._is_own(instr) and (facts or self._computes(instr)):
+            case "call" if instr not in calls.callees and (facts or self._computes(instr)):
                 values = instr.args[1:]
                 alone = {"param"} if facts else {"const"}
                 return set() if values else alone, [(value, stack) for value in values]
@@ -253,7 +235,7 @@ class Gatherer:
                 return set() if values else {"const"}, [(value, stack) for value in values]
             case "param" if stack and self._given(instr, stack):
                 return set(), [(value, stack[:-1]) for value in self._given(instr, stack)]
-        if instr.op == "param" and instr.function in self.follower.flow.points.calls.registered:
+        if instr.op == "param" and instr.function in calls.registered:
             return {"other"}, []
         origins = list(self.follower.flow.origins(instr))
         if not origins:
@@ -266,10 +248,46 @@ class Gatherer:
         return self.follower.flow.points.calls.given.get((stack[-1], param), [])
 
     def _computes(self, instr: Instr) -> bool:
-        """True for a call that makes a value of its arguments alone: ``abs``, ``max``."""
+        """True for a call whose result depends on its arguments alone: ``abs``, ``max``."""
         flow = self.follower.flow
         paths = flow.points.calls.outside.get(instr, {})
         return any(path in self.follower.rules.arithmetic for path, _ in paths)
 
-    def _is_own(self, instr: Instr) -> bool:
-        return instr in self.follower.flow.points.calls.callees
+
+def find_constants(follower: Follower) -> list[Found]:
+    """The comparisons with hard-coded numbers, and the predicates that they decide, in order.
+
+    Such a number is a literal, or a name of a module or class that is bound to one. Left out are
+    truth values, ``None``, texts, ``!= 0``, and comparisons that have a parameter on one side.
+    """
+    found: dict[tuple[object, ...], Found] = {}
+    for instr in follower.flow.points.program.instructions():
+        if instr.op != "compare":
+            continue
+        for operand in (0, 1):
+            name = _constant(instr, operand, follower.constants)
+            if name is not None:
+                key = (instr.function.module, span_of(instr, operand))
+                one = found.setdefault(key, Found(instr, operand, name, []))
+                one.predicates.update(dict.fromkeys(follower.outcomes.predicates(instr)))
+                break
+    return list(found.values())
+
+
+def _constant(instr: Instr, operand: int, constants: Constants) -> str | None:
+    """The name of the constant that is one operand, if the other operand is not a constant."""
+    threshold, other = instr.args[operand], instr.args[1 - operand]
+    number = constants.number(threshold)
+    values = constants.values(threshold)
+    if number is None or isinstance(values[0], bool) or instr.data in ("In", "NotIn"):
+        return None
+    if constants.number(other) is not None or (number == 0 and instr.data == "NotEq"):
+        return None
+    is_negative = threshold.op == "unary" and threshold.args[0].op == "const"
+    if threshold.op == "const" or is_negative:
+        return repr(values[0])
+    if threshold.op == "load" and isinstance(threshold.data, Variable):
+        return named_variable(threshold) if threshold.data.owner.qualname == "<module>" else None
+    if threshold.op == "attr" and str(threshold.data).isupper():
+        return named_variable(threshold)
+    return None

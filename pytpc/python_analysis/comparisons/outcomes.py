@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from pytpc.python_analysis.flow.constants import Constants
-from pytpc.python_analysis.flow.contexts import Stack, moves
-from pytpc.python_analysis.flow.value_flow import Flow
+from pytpc.python_analysis.flow.value_flow import Flow, Stack
 from pytpc.python_analysis.ir.instructions import Instr
 from pytpc.python_analysis.rules_file import Rules
 
@@ -15,24 +14,24 @@ _OF_OUTCOMES = {"any", "all", "sum", "max", "min", "item", "copy", "astype", "to
 class Outcomes:
     """Follows outcomes of comparisons.
 
-    ``selecting``: what was found to choose by one without a branch, ``scan[scan < limit]``.
+    ``selecting``: instructions that choose elements by an outcome without a branch, as in
+    ``scan[scan < limit]``.
     """
 
     def __init__(self, flow: Flow, constants: Constants, rules: Rules) -> None:
-        """Nothing is followed yet."""
         self.flow = flow
         self.constants = constants
         self.rules = rules
         self.selecting: dict[Instr, None] = {}
 
     def predicates(self, outcome: Instr, stack: Stack = ()) -> list[Instr]:
-        """The branches that the outcome of a comparison decides, where it came by ``stack``."""
+        """The branches that the outcome of a comparison decides; the outcome came by ``stack``."""
         seen = {(outcome, stack)}
         waiting = [(outcome, stack)]
         found: dict[Instr, None] = {}
         while waiting:
             value, here = waiting.pop()
-            following = [(to, after) for to, _, after in moves(self.flow, value, here)]
+            following = [(to, after) for to, _, after in self.flow.moves(value, here)]
             found.update(dict.fromkeys(self._filtering(value)))
             for user in self.flow.users.get(value, ()):
                 if self._selects(user, value):
@@ -51,7 +50,7 @@ class Outcomes:
         return list(found)
 
     def _filtering(self, value: Instr) -> list[Instr]:
-        """The calls of ``filter`` and its kin to which a function returns ``value``."""
+        """The calls of ``filter`` and similar functions to which a function returns ``value``."""
         if all(user.op != "return" for user in self.flow.users.get(value, ())):
             return []
         calls = self.flow.points.calls
@@ -69,7 +68,7 @@ class Outcomes:
         return any(path in self.rules.filters for path, _ in outside)
 
     def _passes(self, user: Instr, value: Instr) -> bool:
-        """True where the value of ``user`` says what the outcome ``value`` says."""
+        """True where the value of ``user`` has the information of the outcome ``value``."""
         match user.op:
             case "unary" | "match" | "iter" | "next":
                 return True

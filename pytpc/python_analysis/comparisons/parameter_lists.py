@@ -1,43 +1,36 @@
-"""Lists of parameter objects: what ``get_parameters`` returns, and what a callback is handed.
+"""Lists of parameter objects: results of ``get_parameters``, and arguments of callbacks.
 
-Their elements are reads where their value is taken. The name is that with which the element's name
-is compared (``if p.name == "limit": self.limit = p.value``), else that at its place in the list
-that was asked for; where neither is known, it is ``<dynamic>``.
+An element is a read where the program takes its value. Its name is the one that it is compared with
+(``if p.name == "limit": self.limit = p.value``), else the one at its place in the list of requested
+names; where neither is known, it is ``<dynamic>``.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from pytpc.python_analysis.flow.constants import DYNAMIC, Constants
 from pytpc.python_analysis.ir.control import control_dependence, post_dominators
 from pytpc.python_analysis.ir.instructions import Block, Function, Instr
 
 
-@dataclass(frozen=True)
-class TakenValue:
-    """``instr`` has the value of the parameter ``name``."""
-
-    name: str
-    instr: Instr
-
-
 class ParameterLists:
-    """Finds the elements of lists, and the names of those whose value is taken."""
+    """Finds the elements of lists whose value is taken, and their names."""
 
     def __init__(self, constants: Constants) -> None:
-        """Nothing is looked at yet."""
         self._constants = constants
         self._flow = constants.flow
         self._control: dict[Function, dict[Block, list[Block]]] = {}
 
-    def taken(self, start: Instr, names: list[str]) -> Iterator[TakenValue]:
-        """The values that are taken of the elements of the list ``start``.
+    def taken(self, start: Instr, names: list[str]) -> Iterator[tuple[str, Instr]]:
+        """The values that the program takes from elements of the list ``start``.
 
         Args:
-            start: what has the list.
-            names: of its elements in order; empty where they are not known.
+            start: the instruction with the list.
+            names: the names of its elements in order; empty where they are not known.
+
+        Yields:
+            The name of a parameter, and the instruction that has its value.
         """
         elements = self._elements(start)
         values = self._flow.points.rules.values
@@ -46,10 +39,10 @@ class ParameterLists:
                 if user.op == "attr" and str(user.data) in values:
                     known = self._names(user, elements, place, names)
                     for value in self._values(user):
-                        yield from (TakenValue(name, value) for name in known)
+                        yield from ((name, value) for name in known)
 
     def named(self, asked: Instr) -> list[str]:
-        """The names in a list of names, or of tuples that begin with one."""
+        """The names in a list of names, or of tuples that begin with a name."""
         found: list[str] = []
         for each in self._flow.points.of(asked):
             if each.kind != "container" or each.site is None or each.site.op != "build":
@@ -100,7 +93,7 @@ class ParameterLists:
         return list(dict.fromkeys(names)) or [DYNAMIC]
 
     def _compared(self, attr: Instr, elements: dict[Instr, int | None]) -> str | None:
-        """The constant that the element's name is equal to where ``attr`` is run."""
+        """The constant that the element's name is equal to where ``attr`` runs."""
         function = attr.function
         if function not in self._control:
             self._control[function] = control_dependence(function)

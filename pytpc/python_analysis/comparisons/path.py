@@ -1,4 +1,4 @@
-"""The way of a comparison in the source's words: from the first read to what is exposed."""
+"""The path of a comparison in the words of the source: from the first read to the exposing one."""
 
 from __future__ import annotations
 
@@ -32,21 +32,20 @@ def path_of(
     """The steps of docs/reference/formats.md, one for each line.
 
     Args:
-        found: a comparison with a parameter, that decides something exposed.
+        found: a comparison with a parameter that decides something exposed.
         within: the slice.
         source: gives the text of a line of an instruction's file.
     """
-    before = _merged([*_to_comparison(found)], source)
+    before = _merged(_to_comparison(found), source)
     after = _merged(_to_exposing(found, within), source)
-    if len(before) > _AT_MOST:
-        before = [*before[: _AT_MOST - 1], _omitted(len(before) - _AT_MOST), before[-1]]
-    if len(after) > _AT_MOST:
-        after = [*after[: _AT_MOST - 1], _omitted(len(after) - _AT_MOST), after[-1]]
-    return (*before, *after)
+    return (*_shortened(before), *_shortened(after))
 
 
-def _omitted(count: int) -> PathStep:
-    return PathStep("omitted", "", 0, 0, "", f"{count} steps are left out", None)
+def _shortened(steps: list[PathStep]) -> list[PathStep]:
+    if len(steps) <= _AT_MOST:
+        return steps
+    what = f"{len(steps) - _AT_MOST} steps are left out"
+    return [*steps[: _AT_MOST - 1], PathStep("omitted", "", 0, 0, "", what, None), steps[-1]]
 
 
 def _to_comparison(found: Found) -> list[_Event]:
@@ -60,12 +59,12 @@ def _to_comparison(found: Found) -> list[_Event]:
     for fact in facts[1:]:
         events += _arrival(fact)
     is_value = found.operand < 0 and found.inside is None
-    decides = "decides as it is" if is_value else "compared"
+    decides = "is the condition" if is_value else "compared"
     events.append(_Event("compare", found.at, decides))
     if found.predicate is not None and found.predicate is not found.at:
         same = position(found.predicate)[0] == position(found.at)[0]
         if not same:
-            events.append(_Event("decide", found.predicate, "the outcome decides here"))
+            events.append(_Event("decide", found.predicate, "the outcome decides this branch"))
     return events
 
 
@@ -97,7 +96,7 @@ def _shown(function: Function) -> str:
 
 def _target(store: Instr) -> str:
     if isinstance(store.data, Variable):
-        return "a value that is chosen" if store.data.name.startswith("<") else store.data.name
+        return "the chosen value" if store.data.name.startswith("<") else store.data.name
     owner = named_variable(store.args[0]) or "an object"
     return f"{owner}.{store.data}" if store.op == "setattr" else f"an element of {owner}"
 
@@ -136,7 +135,7 @@ def _to_exposing(found: Found, within: Slice) -> list[_Event]:
 
 
 def _merged(events: list[_Event], source: Callable[[Instr, int], str | None]) -> list[PathStep]:
-    """One step for each line, by the most telling of what happens there."""
+    """One step for each line; of several events on a line it has the most telling one."""
     groups: list[list[_Event]] = []
     for event in events:
         line = (event.at.function.module, position(event.at)[0])

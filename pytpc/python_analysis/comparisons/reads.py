@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 from pytpc.python_analysis.comparisons.parameter_lists import ParameterLists
 from pytpc.python_analysis.flow.constants import DYNAMIC, Constants
-from pytpc.python_analysis.flow.contexts import Stack
-from pytpc.python_analysis.flow.value_flow import Flow
+from pytpc.python_analysis.flow.value_flow import Flow, Stack
 from pytpc.python_analysis.ir.instructions import Function, Instr
 from pytpc.python_analysis.points_to.call_table import CallTable, Given
 from pytpc.python_analysis.points_to.objects import Obj
@@ -47,7 +46,7 @@ class Exposed:
 
 
 def argument(given: list[Given], where: Argument) -> Instr | None:
-    """The argument of a call that a rule names; None where it is not given."""
+    """The argument of a call that a rule names; None where the call does not give it."""
     for keyword, value in given:
         if keyword is not None and keyword == where.keyword:
             return value
@@ -62,7 +61,7 @@ def argument(given: list[Given], where: Argument) -> Instr | None:
 
 
 def find_reads(flow: Flow, constants: Constants, rules: Rules) -> list[Read]:
-    """All reads, in the order of the program; one for each name that a call may read."""
+    """All reads in the order of the program, one for each name that a call may read."""
     found: list[Read] = []
     lists = ParameterLists(constants)
     for instr, paths in flow.points.calls.outside.items():
@@ -71,7 +70,9 @@ def find_reads(flow: Flow, constants: Constants, rules: Rules) -> list[Read]:
             if path in rules.reads:
                 found += _read(instr, path, given, constants, rules)
             if path in rules.configs:
-                found += _configs(flow, path, given, rules)
+                where, place = rules.configs[path]
+                params = _handed(flow, argument(given, where), place)
+                found += [Read("", path, param, is_table=True) for param in params]
             if path in rules.lists:
                 found += _listed(flow, instr, path, given, lists)
     return sorted(found, key=lambda read: (read.instr.number, read.name))
@@ -86,7 +87,7 @@ def _read(
     names = [DYNAMIC] if name is None else constants.names(name)
     if name is None or (len(names) == 1 and DYNAMIC not in names[0]):
         return [_made(each, path, instr, _default(constants, default), ((),)) for each in names]
-    # The name is an argument of the function that reads: each call of it reads its own.
+    # The name is an argument of the function that reads: each of its calls reads another name.
     found: dict[tuple[str, Default], list[Stack]] = {}
     for stack, known in _contexts(constants, instr.function, _DEEPEST):
         with constants.where(known):
@@ -104,7 +105,7 @@ def _made(name: str, path: str, instr: Instr, value: Default, stacks: tuple[Stac
 
 
 def _contexts(constants: Constants, function: Function, depth: int) -> list[Context]:
-    """The ways on which ``function`` is called, and what its parameters are on each."""
+    """The chains of calls of ``function``, each with the values that its parameters have then."""
     calls = constants.flow.points.calls
     found: list[Context] = []
     for site in calls.callers.get(function, ()) if depth else ():
@@ -134,18 +135,13 @@ def _default(constants: Constants, instr: Instr | None) -> Default:
     return value if finite else None
 
 
-def _configs(flow: Flow, path: str, given: list[Given], rules: Rules) -> list[Read]:
-    where, place = rules.configs[path]
-    handed = _handed(flow, argument(given, where), place)
-    return [Read("", path, param, is_table=True) for param in handed]
-
-
 def _handed(flow: Flow, callback: Instr | None, place: int) -> Iterator[Instr]:
-    """The parameter of a callback that is handed the argument number ``place``."""
+    """The parameter of a callback that gets the argument number ``place``."""
     for each in flow.points.of(callback) if callback is not None else ():
-        function, first = _first_free(each)
-        if function is not None and first + place < len(function.param_instrs):
-            yield function.param_instrs[first + place]
+        params = each.function.param_instrs if each.function is not None else []
+        number = place + (1 if each.kind == "method" else 0)
+        if number < len(params):
+            yield params[number]
 
 
 def _listed(
@@ -157,16 +153,10 @@ def _listed(
     starts = [(instr, lists.named(asked))] if asked is not None else []
     starts += [(each, []) for each in _handed(flow, argument(given, where_callback), 0)]
     return [
-        Read(taken.name, path, taken.instr)
+        Read(name, path, value)
         for start, names in starts
-        for taken in lists.taken(start, names)
+        for name, value in lists.taken(start, names)
     ]
-
-
-def _first_free(callback: Obj) -> tuple[Function | None, int]:
-    if callback.function is None:
-        return None, 0
-    return callback.function, 1 if callback.kind == "method" else 0
 
 
 def find_exposing(flow: Flow, constants: Constants, rules: Rules) -> list[Exposed]:
@@ -185,7 +175,7 @@ def find_exposing(flow: Flow, constants: Constants, rules: Rules) -> list[Expose
 
 
 def _unresolved(flow: Flow) -> list[Instr]:
-    """``x.publish(...)`` where nothing is known of ``x``: what else would it be."""
+    """``x.publish(...)`` where nothing is known of ``x`` is taken for an exposing statement."""
     return [
         instr
         for instr in flow.points.program.instructions()
@@ -199,7 +189,7 @@ def _unresolved(flow: Flow) -> list[Instr]:
 def _answers(
     flow: Flow, instr: Instr, path: str, constants: Constants, rules: Rules
 ) -> list[Exposed]:
-    """What a service's handler returns."""
+    """What the handler of a service returns."""
     callback = argument(CallTable.arguments(instr), rules.services[path])
     topic = _topic_of(instr, path, constants, rules)
     found = []

@@ -1,8 +1,8 @@
-"""Backward: from the exposing statements over data and control dependence, by rounds.
+"""Backward: from the exposing statements over data and control dependence, in rounds.
 
-The thesis's algorithm 3 (docs/reference/analysis.md#the-slice). Round 1 holds the exposing
-statements. What an expression computes in passing belongs to the round of its statement; stores,
-arguments, results and branches are a round each.
+This is algorithm 3 of the thesis (docs/reference/analysis.md#the-slice). Round 1 holds the exposing
+statements. All parts of an expression belong to the round of its statement; stores, arguments,
+results and branches are a round each.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 from pytpc.python_analysis.comparisons.reads import Exposed
 from pytpc.python_analysis.flow.library_calls import choosing_calls
-from pytpc.python_analysis.flow.raising import Raising
+from pytpc.python_analysis.flow.raising import Leaving
 from pytpc.python_analysis.flow.value_flow import Flow
 from pytpc.python_analysis.ir.control import control_dependence
 from pytpc.python_analysis.ir.instructions import Block, Function, Instr
@@ -20,11 +20,11 @@ from pytpc.python_analysis.ir.instructions import Block, Function, Instr
 
 @dataclass
 class Slice:
-    """``distance``: branch -> distance. ``nearest``: instruction -> the exposing statements.
+    """``distance``: branch -> distance. ``nearest``: instruction -> the exposing statement.
 
     ``because``: instruction -> the one that brought it into the slice, and how (``control``,
     ``data``, ``call``). ``holder``: a call that chooses a value -> the instruction of the slice
-    in whose expression it is.
+    that has it in its expression.
     """
 
     distance: dict[Instr, int] = field(default_factory=dict)
@@ -34,12 +34,13 @@ class Slice:
 
 
 class Slicer:
-    """Makes the slice of a program."""
+    """Computes the slice of a program."""
 
-    def __init__(self, flow: Flow, raising: Raising, selecting: Iterable[Instr] = ()) -> None:
-        """Nothing is in the slice yet; ``selecting`` are predicates without a branch."""
+    def __init__(self, flow: Flow, leaving: Leaving, selecting: Iterable[Instr] = ()) -> None:
+        """``selecting`` are predicates without a branch."""
         self.flow = flow
-        self.raising = raising
+        self.leaving = leaving
+        self._own = flow.points.calls.callees
         self._raised: set[Instr] = set()
         self._filters = {
             call
@@ -69,7 +70,7 @@ class Slicer:
         return result
 
     def controlling(self, instr: Instr) -> list[Instr]:
-        """The branches, and calls that raise, that decide in its function whether it runs."""
+        """The branches and raising calls of its function that decide whether ``instr`` runs."""
         found: dict[Instr, None] = {}
         seen = {instr.block}
         waiting = [instr.block]
@@ -78,8 +79,8 @@ class Slicer:
                 if deciding.op != "dispatch":
                     found[deciding] = None
                     continue
-                # How a `finally` was come to is decided where that is noted; that its end is come
-                # to, by what raises in it.
+                # The way into a `finally` is decided where it is stored. Whether its end is reached
+                # depends on what raises in it.
                 noted = [store.block for store in self.flow.sources(deciding.args[0])]
                 for block in (*noted, deciding.block):
                     if block not in seen:
@@ -117,10 +118,10 @@ class Slicer:
                 self._enter(call, instr, "call", further)
 
     def _used(self, instr: Instr, further: list[Instr], number: int) -> None:
-        """What defines the values that ``instr`` uses."""
+        """Enter what defines the values that ``instr`` uses."""
         if instr in self._raised:
             for function in self.flow.points.calls.callees.get(instr, ()):
-                for leaving in self.raising.leaving.get(function, ()):
+                for leaving in self.leaving.get(function, ()):
                     if leaving.op != "raise":
                         self._raised.add(leaving)
                     self._enter(leaving, instr, "call", further)
@@ -128,8 +129,8 @@ class Slicer:
         waiting = [instr]
         while waiting:
             here = waiting.pop()
-            if here is not instr and here.op == "call" and self._is_own(here):
-                # Its arguments matter where the function uses them.
+            if here is not instr and here.op == "call" and here in self._own:
+                # Its arguments count where the function uses them.
                 self._enter(here, instr, "data", further)
             for source in self.flow.sources(here):
                 self._enter(source, instr, "data", further)
@@ -137,12 +138,12 @@ class Slicer:
                 self.slice.distance.setdefault(here, number)
                 self.slice.nearest.setdefault(here, self.slice.nearest[instr])
             if here in self._choosing:
-                # As the branch of a conditional expression, whose value is a step of its own.
+                # Like the branch of a conditional expression, whose value is a step of its own.
                 self.slice.distance.setdefault(here, number + 1)
                 self.slice.nearest.setdefault(here, self.slice.nearest[instr])
                 self.slice.holder.setdefault(here, instr)
             if (number == 1 and here is instr) or here.op in ("call", "return", "iter"):
-                # What publishes is not what is published.
+                # The publisher itself is not published.
                 for arg in here.args[1:] if here is instr and here.op == "call" else here.args:
                     for writer in self.flow.contents(arg, here):
                         self._enter(writer, instr, "data", further)
@@ -151,12 +152,9 @@ class Slicer:
                     seen.add(arg)
                     waiting.append(arg)
 
-    def _is_own(self, call: Instr) -> bool:
-        return call in self.flow.points.calls.callees
-
     def _operands(self, instr: Instr) -> tuple[Instr, ...]:
-        """The operands whose values make the instruction's."""
-        if instr.op == "call" and self._is_own(instr):
+        """The operands from which the value of the instruction is computed."""
+        if instr.op == "call" and instr in self._own:
             return instr.args[:1]
         if instr.op in ("function", "class"):
             return ()

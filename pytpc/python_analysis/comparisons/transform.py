@@ -1,4 +1,4 @@
-"""What was done to a parameter's value before it was compared: scale * inner + offset."""
+"""The computation on a parameter's value before it is compared: scale * inner + offset."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from pytpc.static.link_unit import Transform
 
 _SIGNS = {"/": " / ", "rem": " rem ", "shr": " >> ", "and": " & "}
 _DEEPEST = 12
-# Two to the power of it is no double.
+# Two to the power of this does not fit a double.
 _LONGEST_SHIFT = 1024
 
 
 @dataclass(frozen=True)
 class How:
-    """``inner`` is None for the parameter itself."""
+    """``inner`` is None where no function was applied to the parameter."""
 
     scale: float = 1.0
     offset: float = 0.0
@@ -29,7 +29,7 @@ class How:
 
     @property
     def is_finite(self) -> bool:
-        """False where a number in it is beyond all that JSON has."""
+        """False where a number in it is infinite or NaN, which JSON does not have."""
         inner = self.inner
         below = inner is None or (math.isfinite(inner.constant or 0.0) and inner.of.is_finite)
         return below and math.isfinite(self.scale) and math.isfinite(self.offset)
@@ -48,13 +48,13 @@ class How:
         return replace(self, offset=self.offset + term)
 
     def call(self, op: str, constant: float | None = None, first: bool = False) -> How | None:
-        """``op`` of it, ``constant`` behind or ``first``; None where that is too much."""
+        """``op`` of it and of ``constant``, which may come ``first``; None where it is too deep."""
         if self.depth >= _DEEPEST:
             return None
         return How(inner=Application(op, self, constant, first))
 
     def tree(self) -> Tree:
-        """The form of docs/reference/formats.md."""
+        """The tree of docs/reference/formats.md."""
         found: Tree = "x"
         if self.inner is not None:
             parts: list[Tree] = [self.inner.of.tree()]
@@ -66,7 +66,7 @@ class How:
         return found if self.offset == 0 else ("+", found, self.offset)
 
     def text(self) -> str:
-        """For people: ``2 * sqrt(x + 1)``."""
+        """A text for people: ``2 * sqrt(x + 1)``."""
         text = "x" if self.inner is None else self.inner.text()
         if (
             self.inner is not None
@@ -83,7 +83,7 @@ class How:
         return text
 
     def operand(self) -> str:
-        """Its text beside an operator."""
+        """Its text next to an operator."""
         simple = self.scale == 1 and self.offset == 0
         inner = self.inner
         if simple and (inner is None or not (inner.op in _SIGNS or inner.is_square)):
@@ -91,7 +91,7 @@ class How:
         return f"({self.text()})"
 
     def to_json(self) -> Transform | None:
-        """As static information has it; None where nothing was done."""
+        """The transform of the static information; None where nothing was done."""
         if self.plain:
             return None
         if self.inner is None:
@@ -114,7 +114,7 @@ class Application:
         return self.op == "pow" and not self.first and self.constant == 2
 
     def text(self) -> str:
-        """For people."""
+        """A text for people."""
         if self.is_square:
             return f"{self.of.operand()}^2"
         if self.constant is None:
@@ -136,9 +136,9 @@ def by_operator(how: How, op: str, constant: float, left: bool) -> How | None:
 
     Args:
         how: what was done before.
-        op: the class's name in ``ast``.
+        op: the name of the operator's class in ``ast``.
         constant: the other operand.
-        left: the number stands on the left.
+        left: the number is the left operand.
     """
     if not math.isfinite(constant):
         return None
@@ -168,7 +168,7 @@ def by_operator(how: How, op: str, constant: float, left: bool) -> How | None:
 
 
 def by_function(how: How, op: str, constant: float | None, left: bool) -> How | None:
-    """``how`` after a function of the rules' table ``arithmetic``; arguments as above."""
+    """``how`` after a function of the table ``arithmetic`` of the rules; arguments as above."""
     match op:
         case "same":
             return how

@@ -1,4 +1,4 @@
-"""What is known of a value without running the program: numbers, and the names of things."""
+"""What is known of a value without running the program: numbers and names."""
 
 from __future__ import annotations
 
@@ -33,22 +33,14 @@ _OPERATORS: dict[str, Callable[[float, float], float]] = {
 }
 
 
-class Unknown:
-    """A value that is not known; there is one."""
-
-    def __repr__(self) -> str:
-        """For people who debug."""
-        return "<unknown>"
-
-
-UNKNOWN = Unknown()
+UNKNOWN = object()
+"""A value that is not known."""
 
 
 class Constants:
     """Folds constants over variables, attributes, arguments and results."""
 
     def __init__(self, flow: Flow) -> None:
-        """Nothing is folded before it is asked for."""
         self.flow = flow
         self._known: dict[Instr, tuple[object, ...]] = {}
         self._meanwhile: dict[Instr, tuple[object, ...]] = {}
@@ -57,7 +49,7 @@ class Constants:
 
     @contextmanager
     def where(self, given: dict[Instr, tuple[object, ...]]) -> Iterator[None]:
-        """Inside, parameters are what ``given`` says."""
+        """In this block parameters have the values in ``given``."""
         before = (self._given, self._known, self._meanwhile, self._active)
         self._given, self._known, self._meanwhile, self._active = given, {}, {}, set()
         try:
@@ -66,7 +58,7 @@ class Constants:
             self._given, self._known, self._meanwhile, self._active = before
 
     def values(self, instr: Instr) -> tuple[object, ...]:
-        """All that ``instr`` may be, ``UNKNOWN`` among it where that is not all."""
+        """All values that ``instr`` may have; ``UNKNOWN`` among them stands for others."""
         known = self._known if instr in self._known else self._meanwhile
         if instr in known:
             return known[instr]
@@ -78,7 +70,7 @@ class Constants:
         unique = tuple({(type(each), each): each for each in found}.values())
         if len(unique) > _MOST:
             unique = (UNKNOWN,)
-        # In a circle of values only what was asked for is whole; the others are met once.
+        # In a cycle of values only the result for the first one is complete.
         self._meanwhile[instr] = unique
         if not self._active:
             self._known[instr] = unique
@@ -86,7 +78,7 @@ class Constants:
         return unique
 
     def number(self, instr: Instr) -> float | None:
-        """The number that ``instr`` is in any case."""
+        """The number that ``instr`` always is; None where it is not always the same."""
         values = self.values(instr)
         if len(values) == 1 and isinstance(values[0], (int, float)):
             try:
@@ -96,7 +88,7 @@ class Constants:
         return None
 
     def names(self, instr: Instr) -> list[str]:
-        """The texts that ``instr`` may be, ``<dynamic>`` for what is not known."""
+        """The texts that ``instr`` may be, ``<dynamic>`` for unknown ones."""
         texts = [each if isinstance(each, str) else DYNAMIC for each in self.values(instr)]
         return list(dict.fromkeys(texts)) or [DYNAMIC]
 
@@ -136,7 +128,7 @@ class Constants:
         return [-each if isinstance(each, (int, float)) else UNKNOWN for each in values]
 
     def _named(self, instr: Instr) -> list[object]:
-        """Constants of libraries, texts that are put together, arithmetic with constants."""
+        """Constants of libraries, formatted texts, arithmetic with constants."""
         for found in self.flow.points.of(instr):
             if found.kind == "external" and found.path in _KNOWN:
                 return [_KNOWN[found.path]]

@@ -1,4 +1,4 @@
-"""Which variables and attributes a call reads and writes, with all that it calls."""
+"""Which variables and attributes a call reads and writes, including what it calls."""
 
 from __future__ import annotations
 
@@ -12,19 +12,18 @@ from pytpc.python_analysis.points_to.points_to import PointsTo
 
 ANY_ATTRIBUTE = "*"
 Name = str | Variable
-"""An attribute, whatever its object, or a variable."""
+"""An attribute of any object, or a variable."""
 
 
 @dataclass(frozen=True, slots=True)
 class Effects:
-    """``writes`` and ``reads``: one bit for each name; ``waits``: other threads may run between."""
+    """``writes`` and ``reads``: one bit for each name; ``waits``: other threads may run then."""
 
     writes: int = 0
     reads: int = 0
     waits: bool = False
 
     def __or__(self, other: Effects) -> Effects:
-        """Both."""
         return Effects(
             self.writes | other.writes, self.reads | other.reads, self.waits or other.waits
         )
@@ -33,12 +32,11 @@ class Effects:
 class CallEffects:
     """The effects of every instruction that calls something which has any.
 
-    Sets of names are numbers with a bit for each: a program of 100,000 lines has as many calls as
-    lines, and any of them may reach thousands of names.
+    A set of names is a number with a bit for each: a program of 100,000 lines has about as many
+    calls, and each may reach thousands of names.
     """
 
     def __init__(self, flow: PointsTo) -> None:
-        """Work them out, from the called functions to those that call them."""
         self._flow = flow
         self._bits: dict[Name, int] = {}
         self._functions = {each: self._own(each) for each in flow.program.functions}
@@ -49,38 +47,35 @@ class CallEffects:
                 calls.setdefault(instr, []).extend(called)
         self._spread(calls)
         for instr, functions in calls.items():
-            self._of_call[instr] = self._of_all(functions)
+            found = [self._functions[each] for each in functions if each in self._functions]
+            # Most calls have one callee: its effects are not copied.
+            self._of_call[instr] = reduce(or_, found) if found else Effects()
         for instr in flow.calls.outside:
             own = Effects(*self._by_name(instr), _waits(instr, flow))
             if own != Effects():
                 self._of_call[instr] = self._of_call.get(instr, Effects()) | own
 
     def of(self, call: Instr) -> Effects | None:
-        """What ``call`` does, with all that it calls; None where it does nothing of this."""
+        """The effects of ``call`` and of all that it calls; None where there are none."""
         return self._of_call.get(call)
 
     def mask(self, name: Name) -> int:
-        """The bits in ``writes`` and ``reads`` that touch a variable, or an attribute."""
+        """The bits in ``writes`` and ``reads`` that concern a variable or an attribute."""
         found = self._bits.get(name, 0)
         return found | self._bits.get(ANY_ATTRIBUTE, 0) if isinstance(name, str) else found
 
     def _bit(self, name: Name) -> int:
         return self._bits.setdefault(name, 1 << len(self._bits))
 
-    def _of_all(self, functions: list[Function]) -> Effects:
-        found = [self._functions[each] for each in functions if each in self._functions]
-        # Most calls have one callee: its effects are not copied.
-        return reduce(or_, found) if found else Effects()
-
     def _spread(self, calls: dict[Instr, list[Function]]) -> None:
-        """What a function does, those that call it do."""
+        """Add the effects of each function to those of its callers."""
         users: dict[Function, dict[Function, None]] = {}
         for instr, called in calls.items():
             for function in called:
                 users.setdefault(function, {})[instr.function] = None
         waiting = dict.fromkeys(self._functions)
         while waiting:
-            # By rounds: a function that many change is handed on once for all of them.
+            # In rounds: a function that many callees change is passed on once for all of them.
             now, waiting = waiting, {}
             for function in now:
                 for user in users.get(function, ()):

@@ -1,8 +1,8 @@
 """Comparisons inside library functions: ``min``, ``operator.gt``, ``math.isclose``, ``numpy.clip``.
 
-As for ``std::min`` and its kind in C++ (passes/Idioms), they stand at their call, and what ``min(a,
-b)`` compares is ``b < a``. One whose result is one of its arguments is its own predicate: it
-chooses a value as a conditional expression does.
+As for ``std::min`` in C++ (passes/Idioms), the place of the comparison is the call, and ``min(a,
+b)`` compares ``b < a``. A comparison that chooses one of its arguments is its own predicate, like a
+conditional expression.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ TURNED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 class Inside:
     """A comparison of one argument, the threshold, with ``others``.
 
-    ``relation`` has the threshold on the right-hand side. ``chooses``: the function gives one of
-    its arguments; else its result is the outcome. ``operand`` as in docs/reference/formats.md.
+    ``relation`` has the threshold on the right-hand side. ``chooses``: the function returns one of
+    its arguments; else it returns the outcome. ``operand`` as in docs/reference/formats.md.
     """
 
     relation: str
@@ -33,10 +33,10 @@ class Inside:
 
 
 def compared_inside(flow: Flow, call: Instr) -> dict[int, Inside]:
-    """The comparisons inside of what ``call`` calls: number of the argument -> comparison.
+    """The comparisons inside the function that ``call`` calls: argument's number -> comparison.
 
-    Nothing where several functions may be called, where arguments are unpacked or bound before, and
-    where ``min`` and ``max`` are handed a ``key`` or one iterable.
+    There are none where several functions may be called, where arguments are unpacked or bound
+    before, and where ``min`` and ``max`` get a ``key`` or one iterable.
     """
     row = _row(flow, call)
     shape = call.data
@@ -51,7 +51,7 @@ def compared_inside(flow: Flow, call: Instr) -> dict[int, Inside]:
         return _clip(args, names, count)
     smallest = row.chooses == "smallest"
     return {
-        # The first one stays where another is not beyond it.
+        # `min` and `max` return the first argument unless another is beyond it.
         place: Inside(
             "<" if smallest == (place == 0) else ">",
             tuple(arg for other, arg in enumerate(args[:count]) if other != place),

@@ -1,31 +1,24 @@
-"""Calls of functions that raise: where the exception may go on.
+"""Calls of functions that raise: where the exception may go.
 
-A call through which a ``raise`` of the sources may come ends its block; its further successors are
-the handlers that may take the exception, and the function's exit.
+A call through which a ``raise`` of the sources may come ends its block. Its further successors are
+the handlers that may catch the exception, and the function's exit.
 """
 
 from __future__ import annotations
-
-from dataclasses import dataclass, field
 
 from pytpc.python_analysis.ir.exceptions import taken_by
 from pytpc.python_analysis.ir.instructions import Block, Function, Instr
 from pytpc.python_analysis.points_to.points_to import PointsTo
 
 Name = str | None
-"""The name of an exception's class; None where it is not known."""
+"""The name of an exception's class; None where it is unknown."""
+Leaving = dict[Function, dict[Instr, None]]
+"""A function -> the ``raise`` statements and calls by which exceptions leave it."""
 
 
-@dataclass
-class Raising:
-    """``leaving``: a function -> its ``raise`` statements, and calls, that exceptions leave by."""
-
-    leaving: dict[Function, dict[Instr, None]] = field(default_factory=dict)
-
-
-def add_raising_calls(points: PointsTo) -> Raising:
-    """Work out which calls raise, and split blocks behind them."""
-    result = Raising()
+def add_raising_calls(points: PointsTo) -> Leaving:
+    """Find the calls that raise, and split their blocks behind them."""
+    leaving: Leaving = {}
     names: dict[Function, dict[Name, None]] = {}
     calls = [
         (call, list(called))
@@ -36,29 +29,29 @@ def add_raising_calls(points: PointsTo) -> Raising:
         for instr in function.instructions():
             if instr.op == "raise":
                 name = instr.data if isinstance(instr.data, str) else None
-                _leave(instr, [name], names, result)
+                _leave(instr, [name], names, leaving)
     changed = True
     while changed:
         changed = False
         for call, called in calls:
             raised = [name for each in called for name in names.get(each, ())]
-            changed |= _leave(call, raised, names, result)
+            changed |= _leave(call, raised, names, leaving)
     for call, called in calls:
         raised = [name for each in called for name in names.get(each, ())]
         if raised:
             _split(call, raised)
-    return result
+    return leaving
 
 
 def _leave(
-    instr: Instr, raised: list[Name], names: dict[Function, dict[Name, None]], result: Raising
+    instr: Instr, raised: list[Name], names: dict[Function, dict[Name, None]], leaving: Leaving
 ) -> bool:
     known = names.setdefault(instr.function, {})
     before = len(known)
     for name in raised:
         if taken_by(instr.block.handlers, name)[1]:
             known[name] = None
-            result.leaving.setdefault(instr.function, {})[instr] = None
+            leaving.setdefault(instr.function, {})[instr] = None
     return len(known) != before
 
 

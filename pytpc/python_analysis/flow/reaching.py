@@ -1,8 +1,8 @@
 """Which stores a load sees: reaching definitions of variables and of ``name.attribute``.
 
-A. Aho, M. Lam, R. Sethi, J. Ullman, "Compilers", section 9.2. What is shared with other functions
-is open at a function's entry, and behind calls that write it: then a load sees their stores, too. A
-store that is replaced before anybody else can look is hidden from them.
+A. Aho, M. Lam, R. Sethi, J. Ullman, "Compilers", section 9.2. Variables that other functions share
+are open at a function's entry, and after calls that write them: there a load also sees stores of
+other functions. A store that is replaced before other code can read it is hidden from them.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ Cell = Variable | tuple[Variable, str]
 class Reaching:
     """The result for all functions.
 
-    ``stores``: a load (or attr) -> the stores of its own function that it sees; only of cells that
-    are told apart. ``open``: the loads that see other functions' stores as well. ``hidden``: the
+    ``stores``: a load (or attr) -> the stores of its own function that it sees, for cells that are
+    distinguished. ``open``: the loads that see other functions' stores as well. ``hidden``: the
     stores that no other function sees.
     """
 
@@ -29,25 +29,8 @@ class Reaching:
     hidden: set[Instr] = field(default_factory=set)
 
 
-def reaching_definitions(
-    functions: list[Function], effects: CallEffects, escaping: set[Instr]
-) -> Reaching:
-    """Work out ``Reaching`` of all functions.
-
-    Args:
-        functions: all of the program.
-        effects: what their calls read and write.
-        escaping: loads of objects that are handed on as a whole; what is stored in their attributes
-            is seen there.
-    """
-    result = Reaching()
-    for function in functions:
-        _OneFunction(function, effects, escaping, result).run()
-    return result
-
-
 def cell_of(instr: Instr, stable: set[Variable]) -> Cell | None:
-    """The cell that a load, store, attr or setattr is about; None where it is not told apart."""
+    """The cell that a load, store, attr or setattr accesses; None where it is not distinguished."""
     if instr.op in ("load", "store") and isinstance(instr.data, Variable):
         return instr.data
     if instr.op in ("attr", "setattr"):
@@ -57,7 +40,13 @@ def cell_of(instr: Instr, stable: set[Variable]) -> Cell | None:
     return None
 
 
-class _OneFunction:
+class ReachingInFunction:
+    """Computes `Reaching` for one function.
+
+    ``effects``: what calls read and write. ``escaping``: loads of objects that are passed on as a
+    whole, so that what is stored in their attributes is seen there.
+    """
+
     def __init__(
         self,
         function: Function,
@@ -78,6 +67,7 @@ class _OneFunction:
         self.cell: dict[Instr, Cell] = {}
 
     def run(self) -> None:
+        """Add to the result."""
         for instr in self.function.instructions():
             cell = cell_of(instr, self.stable)
             if cell is None:
@@ -177,7 +167,7 @@ class _OneFunction:
 
 
 def _bound_once(function: Function) -> set[Variable]:
-    """The function's own variables that one instruction binds: a path through them is one."""
+    """The function's own variables that one instruction binds: paths through one are equal."""
     count: dict[Variable, int] = {}
     for instr in function.instructions():
         if instr.op == "store" and isinstance(instr.data, Variable):

@@ -1,21 +1,24 @@
-"""Where values go and where they come from: copies, through variables, fields and calls."""
+"""Where values go and come from: copies through variables, fields and calls."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from pytpc.python_analysis.flow.effects import CallEffects
-from pytpc.python_analysis.flow.reaching import Reaching, reaching_definitions
-from pytpc.python_analysis.ir.instructions import Block, Instr, Variable
+from pytpc.python_analysis.flow.reaching import Reaching, ReachingInFunction
+from pytpc.python_analysis.ir.instructions import Instr, Variable, reachable
 from pytpc.python_analysis.points_to.objects import UNNAMED, Field, Obj
 from pytpc.python_analysis.points_to.points_to import PointsTo
 
+Stack = tuple[Instr, ...]
+"""The calls by which a value came into a function, the innermost last; empty: nothing is known."""
+_DEEPEST = 3
+
 
 class Flow:
-    """Ways of values in a program, forward (``users``, ``copies``) and backward (``sources``)."""
+    """The flow of values in a program: forward (``users``, ``copies``), backward (``sources``)."""
 
     def __init__(self, points: PointsTo) -> None:
-        """Work out which loads see which stores."""
         self.points = points
         self.users: dict[Instr, list[Instr]] = {}
         self.stores_of: dict[Variable, list[Instr]] = {}
@@ -27,15 +30,16 @@ class Flow:
             if isinstance(instr.data, Variable) and instr.op in ("store", "load"):
                 table = self.stores_of if instr.op == "store" else self.loads_of
                 table.setdefault(instr.data, []).append(instr)
-        self.reaching: Reaching = reaching_definitions(
-            points.program.functions, CallEffects(points), self._escaping()
-        )
+        self.reaching = Reaching()
+        effects, escaping = CallEffects(points), self._escaping()
+        for function in points.program.functions:
+            ReachingInFunction(function, effects, escaping, self.reaching).run()
         for load, stores in self.reaching.stores.items():
             for store in stores:
                 self._seen_by.setdefault(store, []).append(load)
 
     def _escaping(self) -> set[Instr]:
-        """Loads whose value is used for more than an attribute: others may look at the object."""
+        """Loads that are used for more than an attribute: other code may read the object."""
         return {
             load
             for loads in self.loads_of.values()
@@ -67,6 +71,33 @@ class Flow:
             elif isinstance(to, Variable):
                 yield from self._from_outside(value, to)
 
+    def moves(self, value: Instr, stack: Stack) -> Iterator[tuple[Instr, Instr | None, Stack]]:
+        """Where a value that came by ``stack`` is found again.
+
+        Yields:
+            The instruction, the store or call that brings the value there (None: neither), and the
+            calls by which it is there. A field, or a variable of several functions, forgets the
+            calls.
+        """
+        for to, via in self.copies(value):
+            after = self._after(value, to, via, stack)
+            if after is not None:
+                yield to, via, after
+
+    def _after(self, value: Instr, to: Instr, via: Instr | None, stack: Stack) -> Stack | None:
+        """``stack`` once ``value`` is at ``to``; None where it would leave by another call."""
+        calls, users = self.points.calls, self.users.get(value, ())
+        if to.op == "param":
+            handing = [user for user in users if user in calls.callees]
+            sites = [site for site in handing if value in calls.given.get((site, to), ())]
+            return (*stack, sites[0])[-_DEEPEST:] if len(sites) == 1 else ()
+        is_result = via is None and value.function in calls.callees.get(to, {})
+        if is_result and any(user.op == "return" for user in users):
+            if not stack:
+                return ()
+            return stack[:-1] if stack[-1] is to else None
+        return stack if to.function is value.function else ()
+
     def _loads(self, store: Instr) -> Iterator[tuple[Instr, Instr]]:
         direct = self._seen_by.get(store, ())
         for load in direct:
@@ -77,14 +108,10 @@ class Flow:
             for load in self.loads_of.get(variable, ()):
                 if load in self.reaching.open and load not in direct:
                     yield load, store
-            for load in self._module_loads(variable):
-                yield load, store
-
-    def _module_loads(self, variable: Variable) -> Iterator[Instr]:
-        """Accesses ``module.name``."""
-        for to in self.points.succ.get(variable, ()):
-            if isinstance(to, Instr) and to.op != "load":
-                yield to
+            for to in self.points.succ.get(variable, ()):
+                # `module.name`
+                if isinstance(to, Instr) and to.op != "load":
+                    yield to, store
 
     def _from_outside(self, value: Instr, variable: Variable) -> Iterator[tuple[Instr, Instr]]:
         """``module.name = value``."""
@@ -95,7 +122,7 @@ class Flow:
                         yield load, user
 
     def _open_writer(self, field: Field, value: Instr) -> Instr | bool | None:
-        """What writes ``value`` into ``field``; False where nobody else sees it."""
+        """The instruction that writes ``value`` into ``field``; False where none else sees it."""
         writers = [each for each in self.points.writers.get(field, ()) if value in each.args]
         for writer in writers:
             if writer not in self.reaching.hidden:
@@ -103,7 +130,7 @@ class Flow:
         return False if writers else None
 
     def _found_in(self, field: Field) -> Iterator[Instr]:
-        """The instructions that read a field, through fields that are copies of it."""
+        """The instructions that read a field, also through fields that are copies of it."""
         seen = {field}
         waiting = [field]
         while waiting:
@@ -118,7 +145,7 @@ class Flow:
     # Backward
 
     def sources(self, instr: Instr) -> Iterator[Instr]:
-        """What brought the value of ``instr`` there: stores, arguments, what was returned."""
+        """What brought the value of ``instr`` there: stores, arguments, results."""
         if instr.op == "load" and isinstance(instr.data, Variable):
             yield from self._stores(instr, instr.data)
             return
@@ -178,7 +205,7 @@ class Flow:
                     waiting.append(before)
 
     def writers(self, field: object) -> Iterator[Instr]:
-        """What writes a field, and the fields that are copied into it."""
+        """What writes a field, or a field that is copied into it."""
         seen = {field}
         waiting = [field]
         while waiting:
@@ -192,9 +219,10 @@ class Flow:
                     waiting.append(before)
 
     def is_by_unknown_name(self, attr: Instr, writer: Instr | None) -> bool:
-        """True where ``writer`` sets attributes whose names are not known, and this one has a name.
+        """True where ``writer`` sets attributes by unknown names, but ``attr`` is also set by name.
 
-        What is set by its name, to more than a constant as default, is taken to stay that.
+        An attribute that is set by its name, to more than a constant default, is taken to keep that
+        value.
         """
         name = str(attr.data)
         points = self.points
@@ -218,7 +246,7 @@ class Flow:
         return any(user.op == "call" and user.args[0] is attr for user in users)
 
     def objects(self, instr: Instr) -> list[Obj]:
-        """The objects that a value may be, of a local variable those that are stored before."""
+        """The objects that a value may be; for a local variable, those that were stored before."""
         if instr.op == "load" and instr in self.reaching.stores:
             closed = instr not in self.reaching.open or not getattr(instr.data, "shared", True)
             stores = self.reaching.stores[instr]
@@ -231,7 +259,7 @@ class Flow:
         return list(self.points.of(instr))
 
     def _before(self, writer: Instr, owner: Obj, user: Instr) -> bool:
-        """False where ``writer`` is known to write another object than ``user`` uses, or later."""
+        """False where ``writer`` writes another object than ``user`` uses, or writes later."""
         if writer.op in ("setattr", "setitem"):
             named = writer.args[0]
             if owner in self.points.of(named) and owner not in self.objects(named):
@@ -242,14 +270,15 @@ class Flow:
             return True
         if writer.block is user.block and writer.number < user.number:
             return True
-        return user.block in _following(writer.block)
+        after = [*writer.block.successors, *(way.block for way in writer.block.handlers)]
+        return user.block in reachable(after)
 
     def contents(self, instr: Instr, user: Instr) -> Iterator[Instr]:
         """What writes the objects that are reachable from a value: messages, lists, dicts.
 
         Args:
             instr: the value.
-            user: the instruction for which it is asked.
+            user: the instruction that uses it.
         """
         seen: dict[Obj, None] = {}
         waiting = self.objects(instr)
@@ -267,20 +296,7 @@ class Flow:
 
 
 def _is_literal(value: Instr) -> bool:
-    """True for what stands in the source as a constant, also ``-4.0`` and ``(1, 2)``."""
+    """True for a constant of the source, also ``-4.0`` and ``(1, 2)``."""
     if value.op in ("unary", "binary", "build"):
         return all(map(_is_literal, value.args))
     return value.op == "const"
-
-
-def _following(block: Block) -> set[Block]:
-    """The blocks that may run after ``block``."""
-    reached: set[Block] = set()
-    waiting = [*block.successors, *(handler.block for handler in block.handlers)]
-    while waiting:
-        after = waiting.pop()
-        if after not in reached:
-            reached.add(after)
-            waiting += after.successors
-            waiting += [handler.block for handler in after.handlers]
-    return reached

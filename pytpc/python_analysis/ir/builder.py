@@ -9,11 +9,11 @@ from pytpc.python_analysis.ir.instructions import Block, Function, Handler, Inst
 from pytpc.python_analysis.ir.scopes import Scope
 
 Resolver = Callable[[Module, str, int], "Module | str"]
-"""Of an import: the module that does it, the dotted name, the number of dots before it."""
+"""Arguments: the importing module, the dotted name, the number of dots before it."""
 
 
 class Builder:
-    """What all lowering of one function has: the current block, and where to put things."""
+    """The state of lowering one function: the current block, and where instructions go."""
 
     def __init__(self, scope: Scope, resolve: Resolver, numbers: list[int]) -> None:
         """``numbers`` has one item: the number of the next instruction."""
@@ -29,7 +29,7 @@ class Builder:
         self.block = self.new_block()
 
     def new_block(self) -> Block:
-        """A block with nothing before it."""
+        """A block without predecessors."""
         block = Block(self.function, len(self.function.blocks), handlers=self.handlers)
         self.function.blocks.append(block)
         return block
@@ -46,7 +46,7 @@ class Builder:
         self.block.successors.append(to)
 
     def branch(self, value: Instr, node: ast.AST, yes: Block, no: Block) -> None:
-        """End the current block by a predicate."""
+        """End the current block with a predicate."""
         if yes is no:
             self.jump(yes)
             return
@@ -54,7 +54,7 @@ class Builder:
         self.block.successors += [yes, no]
 
     def temporary(self) -> Variable:
-        """A variable that the source does not name."""
+        """A variable without a name in the source."""
         self._temporaries += 1
         name = f"<{self._temporaries}>"
         return self.function.variables.setdefault(name, Variable(name, self.function))

@@ -1,20 +1,20 @@
 """Control dependence: which branches decide whether a block runs.
 
 J. Ferrante, K. Ottenstein, J. Warren, "The Program Dependence Graph and Its Use in Optimization",
-TOPLAS 9(3), 1987: a block depends on a branch whose one way leads to it in any case, and the other
-does not. The dominators are those of K. Cooper, T. Harvey, K. Kennedy, "A Simple, Fast Dominance
-Algorithm", 2001.
+TOPLAS 9(3), 1987: a block depends on a branch if one side of it always leads to the block, and the
+other does not. The dominators are those of K. Cooper, T. Harvey, K. Kennedy, "A Simple, Fast
+Dominance Algorithm", 2001.
 """
 
 from __future__ import annotations
 
-from pytpc.python_analysis.ir.instructions import Block, Function
+from pytpc.python_analysis.ir.instructions import Block, Function, reachable
 
 
 def control_dependence(function: Function) -> dict[Block, list[Block]]:
-    """For each block the blocks whose last instruction decides whether it runs, in order.
+    """For each block, in order, the blocks whose last instruction decides whether it runs.
 
-    What a handler depends on is what its ``try`` depends on, unless a ``raise`` leads to it.
+    A handler depends on what its ``try`` depends on, unless a ``raise`` leads to it.
     """
     blocks = function.blocks
     immediate = post_dominators(function)
@@ -34,7 +34,7 @@ def control_dependence(function: Function) -> dict[Block, list[Block]]:
 
 
 def _inherit(function: Function, found: dict[Block, list[Block]]) -> None:
-    """Blocks that are come to by no edge run where their ``try`` does."""
+    """Blocks that no edge leads to run where their ``try`` does."""
     for block in function.blocks:
         if block.opened is None:
             continue
@@ -44,30 +44,16 @@ def _inherit(function: Function, found: dict[Block, list[Block]]) -> None:
 
 
 def _only_behind(function: Function, handler: Block) -> list[Block]:
-    """The blocks that are come to through ``handler`` alone."""
-    without = _reached(function.blocks[0], handler)
-    within = _reached(handler, None)
+    """The blocks that are reached through ``handler`` alone."""
+    without = reachable([function.blocks[0]], handler)
+    within = reachable([handler], by_raise=False)
     return [block for block in function.blocks if block in within and block not in without]
 
 
-def _reached(start: Block, but: Block | None) -> set[Block]:
-    reached: set[Block] = set()
-    waiting = [start]
-    while waiting:
-        block = waiting.pop()
-        if block is but or block in reached:
-            continue
-        reached.add(block)
-        waiting += block.successors
-        if but is not None:
-            waiting += [handler.block for handler in block.handlers]
-    return reached
-
-
 def post_dominators(function: Function) -> list[int]:
-    """By a block's number the number of its immediate post-dominator; -1 for the last block.
+    """The number of each block's immediate post-dominator, by the block's number; -1 for the last.
 
-    A loop that is never left counts as left at its end.
+    A loop without an exit counts as left at its end.
     """
     blocks = function.blocks
     size = len(blocks)
@@ -79,7 +65,7 @@ def post_dominators(function: Function) -> list[int]:
             before[successor].append(number)
     order = _backward_order(last, before)
     while len(order) < size:
-        # The innermost block of a loop that is never left, as far as it goes.
+        # The innermost block of a loop without an exit, as far as that is known.
         left = set(order)
         stuck = max(number for number in range(size) if number not in left)
         follows[stuck].append(last)

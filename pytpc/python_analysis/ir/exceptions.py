@@ -1,4 +1,4 @@
-"""Which handlers an exception may go to, by the names of classes."""
+"""Which handlers may catch an exception, by the names of classes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ ALL: None = None
 
 
 def names_taken(handler: ast.ExceptHandler) -> tuple[str, ...] | None:
-    """The last parts of the classes' names; None where the handler takes all."""
+    """The last parts of the classes' names; None where the handler catches everything."""
     match handler.type:
         case None:
             return ALL
@@ -24,7 +24,7 @@ def names_taken(handler: ast.ExceptHandler) -> tuple[str, ...] | None:
 
 
 def taken_by(handlers: Sequence[Handler], name: str | None) -> tuple[list[Handler], bool]:
-    """Where an exception of the class ``name`` (None: not known) may go.
+    """Where an exception of the class ``name`` (None: unknown) may go.
 
     Returns:
         The handlers, the innermost first, and whether it may leave the function.
@@ -40,7 +40,7 @@ def taken_by(handlers: Sequence[Handler], name: str | None) -> tuple[list[Handle
 
 
 def _takes(names: tuple[str, ...] | None, raised: str | None) -> bool | None:
-    """True, False, or None where it cannot be told."""
+    """True, False, or None where it is unknown."""
     if names is None:
         return True
     if raised is None:

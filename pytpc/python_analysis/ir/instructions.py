@@ -1,13 +1,13 @@
-"""A Python function as blocks of instructions: what the analyses of this room work on.
+"""A Python function as blocks of instructions, which the analyses of this room work on.
 
 Every subexpression is one instruction and stands for its own value. Conditions are branches at the
-end of a block, one for each operand of ``and``, ``or`` and ``not`` and each link of a chain.
+end of a block, one for each operand of ``and``, ``or`` and ``not`` and for each link of a chain.
 """
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 
@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 class Variable:
     """A name of a function (or of a module, whose body is a function).
 
-    ``shared``: another function than ``owner`` uses it.
+    ``shared``: a function other than ``owner`` uses it.
     """
 
     name: str
@@ -23,7 +23,6 @@ class Variable:
     shared: bool = False
 
     def __repr__(self) -> str:
-        """For people who debug."""
         return f"{self.owner.qualname}:{self.name}"
 
 
@@ -72,7 +71,6 @@ class Instr:
     number: int
 
     def __repr__(self) -> str:
-        """For people who debug."""
         return f"%{self.number}:{self.op}@{getattr(self.node, 'lineno', 0)}"
 
     @property
@@ -83,10 +81,10 @@ class Instr:
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """How the arguments of a call stand: keywords by name, ``*`` and ``**`` for unpacked ones.
+    """The form of a call's arguments: keywords by name, ``*`` and ``**`` for unpacked ones.
 
-    ``names`` has one entry for each argument: None for a positional one. ``decorates``: the call
-    of a decorator.
+    ``names`` has one entry for each argument: None for a positional one. ``decorates``: it is the
+    call of a decorator.
     """
 
     names: tuple[str | None, ...]
@@ -95,7 +93,7 @@ class Shape:
 
 @dataclass(frozen=True, slots=True)
 class Handler:
-    """An ``except``; ``names`` are the classes that it names, None where it takes all."""
+    """An ``except``; ``names`` are the classes that it names, None where it catches everything."""
 
     block: Block
     names: tuple[str, ...] | None
@@ -105,8 +103,8 @@ class Handler:
 class Block:
     """Instructions that run one after another.
 
-    ``handlers`` are where an exception in it may go on, the innermost first;
-    ``opened`` is, for the first block of a handler, the block in which its ``try`` begins.
+    ``handlers``: where an exception in it may go, the innermost first. ``opened``: for the first
+    block of a handler, the block in which its ``try`` begins.
     """
 
     function: Function
@@ -117,16 +115,33 @@ class Block:
     opened: Block | None = None
 
     def __repr__(self) -> str:
-        """For people who debug."""
         return f"{self.function.qualname}#{self.number}"
+
+
+def reachable(
+    starts: Iterable[Block], without: Block | None = None, *, by_raise: bool = True
+) -> set[Block]:
+    """``starts`` and the blocks that may run after them, without going through ``without``.
+
+    Handlers are reached only with ``by_raise``.
+    """
+    reached: set[Block] = set()
+    waiting = [*starts]
+    while waiting:
+        block = waiting.pop()
+        if block is not without and block not in reached:
+            reached.add(block)
+            waiting += block.successors
+            waiting += [handler.block for handler in block.handlers if by_raise]
+    return reached
 
 
 @dataclass(eq=False, slots=True)
 class Function:
     """A function, a lambda, or the body of a module (``<module>``).
 
-    ``defaults``: the number of a parameter -> that of its default among the defaults.
-    ``conditions``: an expression -> the whole condition that it is an operand of.
+    ``defaults``: the number of a parameter -> the number of its default. ``conditions``: an
+    expression -> the whole condition that it is part of.
     """
 
     qualname: str
@@ -147,12 +162,11 @@ class Function:
     conditions: dict[ast.AST, ast.AST] = field(default_factory=dict)
 
     def instructions(self) -> Iterator[Instr]:
-        """All of them, block by block."""
+        """All instructions, block by block."""
         for block in self.blocks:
             yield from block.instrs
 
     def __repr__(self) -> str:
-        """For people who debug."""
         return self.qualname
 
 
@@ -167,34 +181,24 @@ class ClassInfo:
     is_record: bool = False
 
     def __repr__(self) -> str:
-        """For people who debug."""
         return self.qualname
 
 
 @dataclass(eq=False, slots=True)
 class Module:
-    """A source file; ``names`` are the dotted names under which it is imported."""
+    """A source file; ``name`` is the dotted name under which it is imported."""
 
     name: str
     path: str
     source: str
     tree: ast.Module
-    is_package: bool = False
     body: Function | None = None
     functions: list[Function] = field(default_factory=list)
     classes: list[ClassInfo] = field(default_factory=list)
 
     def __repr__(self) -> str:
-        """For people who debug."""
         return self.name
 
 
-class _Any:
-    """A key that is not known."""
-
-    def __repr__(self) -> str:
-        """For people who debug."""
-        return "<any>"
-
-
-ANY = _Any()
+ANY = object()
+"""An unknown key."""

@@ -1,4 +1,4 @@
-"""Constants that stand in the source as they are: loops over them are taken apart."""
+"""Constants in the source: loops over them are unrolled."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ _CONTAINERS = (ast.Tuple, ast.List, ast.Set, ast.Dict)
 def known_elements(
     target: ast.expr, source: ast.expr, module: Module, at_most: int
 ) -> list[dict[str, object]] | None:
-    """What the names of a loop's target are in each round.
+    """The values of the names in a loop's target, in each iteration.
 
     Args:
         target: a name, or a tuple of names.
-        source: what is iterated over: a literal, a module's name for one, or ``.items()``,
+        source: what the loop iterates over: a literal, a module's name for one, or ``.items()``,
             ``.keys()``, ``.values()``, ``sorted()``, ``list()``, ``enumerate()`` of one.
-        module: where both stand.
-        at_most: with more elements than this the loop stays a loop.
+        module: the module of both.
+        at_most: a loop over more elements is not unrolled.
 
     Returns:
         One dict from name to constant for each element; None where not all are constants.
@@ -80,7 +80,7 @@ def _literal(node: ast.expr, module: Module) -> object:
 
 @lru_cache(maxsize=256)
 def _module_constants(module: Module) -> dict[str, object]:
-    """The module's names that are bound once, to a literal container."""
+    """The names of the module that are bound once, to a literal container."""
     stored = Counter(
         node.id
         for node in ast.walk(module.tree)

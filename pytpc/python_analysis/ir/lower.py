@@ -1,4 +1,4 @@
-"""From the syntax tree of a module to instructions: its functions and classes."""
+"""From the syntax tree of a module to instructions: its functions, classes and ``match``."""
 
 from __future__ import annotations
 
@@ -6,30 +6,35 @@ import ast
 from collections.abc import Sequence
 
 from pytpc.python_analysis.ir.builder import Resolver
-from pytpc.python_analysis.ir.instructions import Block, ClassInfo, Function, Instr, Module, Shape
+from pytpc.python_analysis.ir.instructions import (
+    Block,
+    ClassInfo,
+    Function,
+    Instr,
+    Module,
+    Shape,
+    Variable,
+    reachable,
+)
 from pytpc.python_analysis.ir.lower_statements import StatementLowering
 from pytpc.python_analysis.ir.scopes import Names, Scope, names_of
 
-_ENDING = {"exit", "quit", "sys.exit", "os._exit"}
 _MARKING = ("property", "staticmethod", "classmethod", "setter", "getter", "cached_property")
 
 
 def lower_module(module: Module, resolve: Resolver, numbers: list[int]) -> None:
-    """Fill in the functions of ``module``, its body the first of them."""
+    """Fill in the functions of ``module``; its body is the first."""
     body = Function("<module>", module, module.tree)
     module.body = body
-    module.functions.append(body)
-    scope = Scope(body, names_of(module.tree.body), None)
-    lowering = Lowering(scope, resolve, numbers)
-    lowering.run(module.tree.body)
-    waiting = lowering.pending
+    waiting = [(body, Scope(body, names_of(module.tree.body), None))]
+    stars: list[Instr] = []
     while waiting:
         function, scope = waiting.pop(0)
         module.functions.append(function)
-        inner = Lowering(scope, resolve, numbers)
-        inner.stars = lowering.stars
-        inner.run_function()
-        waiting += inner.pending
+        lowering = Lowering(scope, resolve, numbers)
+        lowering.stars = stars
+        lowering.run_function()
+        waiting += lowering.pending
 
 
 class Lowering(StatementLowering):
@@ -52,7 +57,7 @@ class Lowering(StatementLowering):
         if isinstance(node, ast.Lambda):
             self.emit("return", node.body, self.value(node.body))
             self.run([])
-        elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+        elif isinstance(node, ast.Module | ast.FunctionDef | ast.AsyncFunctionDef):
             self.run(node.body)
 
     # Functions and classes
@@ -105,7 +110,8 @@ class Lowering(StatementLowering):
             for bound in names.local & renamed.keys():
                 del renamed[bound]
             for known in renamed.values():
-                self._share(known)
+                if isinstance(known, Variable):
+                    known.shared = True
         function.parameters = [scope.make(argument.arg, function) for argument in given]
         defaults: list[Instr] = []
         first = len(positional) - len(arguments.defaults)
@@ -120,11 +126,6 @@ class Lowering(StatementLowering):
             function.owner = self.class_info
         self.pending.append((function, scope))
         return self.emit("function", node, *defaults, data=function)
-
-    @staticmethod
-    def _share(known: object) -> None:
-        if hasattr(known, "shared"):
-            known.shared = True
 
     class_info: ClassInfo | None = None
 
@@ -155,16 +156,94 @@ class Lowering(StatementLowering):
         self.scope, self.class_info = outer_scope, outer_info
         self.store_name(node.name, self._decorated(value, node), node)
 
+    # Match: one test after another
+
+    def _do_Match(self, node: ast.Match) -> None:
+        subject = self.value(node.subject)
+        after = self.new_block()
+        for case in node.cases:
+            further = self.new_block()
+            self._pattern(case.pattern, subject, further)
+            if case.guard is not None:
+                body = self.new_block()
+                self.condition(case.guard, body, further)
+                self.block = body
+            self.statements(case.body)
+            self.jump(after)
+            self.block = further
+        self.jump(after)
+        self.block = after
+
+    def _pattern(self, pattern: ast.pattern, subject: Instr, no: Block) -> None:
+        """Test and bind; continue in the current block where it matches, else at ``no``."""
+        match pattern:
+            case ast.MatchValue(value=value):
+                known = isinstance(value, ast.Constant | ast.UnaryOp | ast.BinOp)
+                if known:
+                    self._test(pattern, subject, no)
+                else:
+                    outcome = self.emit("compare", pattern, subject, self.value(value), data="Eq")
+                    self._go_on(outcome, pattern, no)
+            case ast.MatchSingleton():
+                self._test(pattern, subject, no)
+            case ast.MatchAs(pattern=inner, name=name):
+                if inner is not None:
+                    self._pattern(inner, subject, no)
+                if name is not None:
+                    self.store_name(name, subject, pattern)
+            case ast.MatchOr(patterns=patterns):
+                self._either(patterns, subject, no)
+            case ast.MatchStar(name=name):
+                if name is not None:
+                    self.store_name(name, subject, pattern)
+            case ast.MatchSequence(patterns=patterns):
+                self._test(pattern, subject, no)
+                self._elements(patterns, subject, no)
+            case ast.MatchMapping(keys=keys, patterns=patterns, rest=rest):
+                self._test(pattern, subject, no)
+                for key, inner in zip(keys, patterns, strict=True):
+                    where = self.value(key)
+                    self._pattern(inner, self.emit("item", inner, subject, where), no)
+                if rest is not None:
+                    self.store_name(rest, subject, pattern)
+            case ast.MatchClass():
+                self._class(pattern, subject, no)
+
+    def _either(self, patterns: list[ast.pattern], subject: Instr, no: Block) -> None:
+        matched = self.new_block()
+        for pattern in patterns:
+            other = no if pattern is patterns[-1] else self.new_block()
+            self._pattern(pattern, subject, other)
+            self.jump(matched)
+            self.block = other
+        self.block = matched
+
+    def _elements(self, patterns: list[ast.pattern], subject: Instr, no: Block) -> None:
+        starred = any(isinstance(pattern, ast.MatchStar) for pattern in patterns)
+        for index, pattern in enumerate(patterns):
+            self._pattern(pattern, self.part(subject, index, starred, pattern), no)
+
+    def _class(self, pattern: ast.MatchClass, subject: Instr, no: Block) -> None:
+        self.value(pattern.cls)
+        self._test(pattern, subject, no)
+        for index, inner in enumerate(pattern.patterns):
+            self._pattern(inner, self.part(subject, index, False, inner), no)
+        for name, inner in zip(pattern.kwd_attrs, pattern.kwd_patterns, strict=True):
+            self._pattern(inner, self.emit("attr", inner, subject, data=name), no)
+
+    def _test(self, pattern: ast.pattern, subject: Instr, no: Block) -> None:
+        """A pattern's own test of the subject is a predicate, like a ``switch``."""
+        outcome = self.emit("match", pattern, subject)
+        self._go_on(outcome, pattern, no)
+
+    def _go_on(self, outcome: Instr, pattern: ast.pattern, no: Block) -> None:
+        yes = self.new_block()
+        self.branch(outcome, pattern, yes, no)
+        self.block = yes
+
 
 def _drop_unreachable(function: Function) -> None:
-    reached: set[Block] = set()
-    waiting = [function.blocks[0]]
-    while waiting:
-        block = waiting.pop()
-        if block not in reached:
-            reached.add(block)
-            waiting += block.successors
-            waiting += [handler.block for handler in block.handlers]
+    reached = reachable([function.blocks[0]])
     if function.exit is not None:
         reached.add(function.exit)
     function.blocks = [block for block in function.blocks if block in reached]

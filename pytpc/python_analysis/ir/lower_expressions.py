@@ -4,24 +4,24 @@ from __future__ import annotations
 
 import ast
 import builtins
-from collections.abc import Callable, Sequence
 
 from pytpc.python_analysis.ir.builder import Builder
 from pytpc.python_analysis.ir.instructions import ANY, Block, Instr, Shape, Variable
 from pytpc.python_analysis.ir.literals import known_elements
 from pytpc.python_analysis.ir.scopes import Names
 
+Comprehension = ast.ListComp | ast.SetComp | ast.GeneratorExp | ast.DictComp
 UNROLLED = 24
-"""A loop over at most so many constants is taken apart."""
+"""Loops over at most this many constants are unrolled."""
 
 
 class ExpressionLowering(Builder):
-    """Lowers the expressions of one function; statements are its subclass's."""
+    """Lowers the expressions of one function; its subclass lowers statements."""
 
     # Conditions
 
     def condition(self, node: ast.expr, yes: Block, no: Block) -> None:
-        """Evaluate ``node`` and go on at ``yes`` or ``no``."""
+        """Evaluate ``node`` and continue at ``yes`` or ``no``."""
         for part in ast.walk(node):
             self.function.conditions.setdefault(part, node)
         match node:
@@ -52,58 +52,53 @@ class ExpressionLowering(Builder):
             self.branch(outcome, node, further, no)
             self.block, left = further, after
 
-    def chosen(self, node: ast.expr, choose: Callable[[Variable, Block], None]) -> Instr:
-        """The value of an expression that control flow chooses; ``choose`` stores it and jumps."""
+    def _value_BoolOp(self, node: ast.BoolOp) -> Instr:
         variable, after = self.temporary(), self.new_block()
-        choose(variable, after)
+        for operand in node.values:
+            value = self.value(operand)
+            self.emit("store", operand, value, data=variable)
+            if operand is node.values[-1]:
+                break
+            further = self.new_block()
+            ways = (further, after) if isinstance(node.op, ast.And) else (after, further)
+            self.branch(value, operand, *ways)
+            self.block = further
+        return self._joined(variable, after, node)
+
+    def _joined(self, variable: Variable, after: Block, node: ast.expr) -> Instr:
+        """The value that the branches stored in ``variable``, in the block ``after`` them."""
+        self.jump(after)
         self.block = after
         return self.emit("load", node, data=variable)
 
-    def _and_or(self, node: ast.BoolOp) -> Instr:
-        def choose(variable: Variable, after: Block) -> None:
-            for operand in node.values:
-                value = self.value(operand)
-                self.emit("store", operand, value, data=variable)
-                if operand is node.values[-1]:
-                    self.jump(after)
-                    return
-                further = self.new_block()
-                ways = (further, after) if isinstance(node.op, ast.And) else (after, further)
-                self.branch(value, operand, *ways)
-                self.block = further
+    def _value_IfExp(self, node: ast.IfExp) -> Instr:
+        variable, after = self.temporary(), self.new_block()
+        yes, no = self.new_block(), self.new_block()
+        self.condition(node.test, yes, no)
+        self.block = yes
+        self.emit("store", node.body, self.value(node.body), data=variable)
+        self.jump(after)
+        self.block = no
+        self.emit("store", node.orelse, self.value(node.orelse), data=variable)
+        return self._joined(variable, after, node)
 
-        return self.chosen(node, choose)
-
-    def _if_else(self, node: ast.IfExp) -> Instr:
-        def choose(variable: Variable, after: Block) -> None:
-            yes, no = self.new_block(), self.new_block()
-            self.condition(node.test, yes, no)
-            for block, part in ((yes, node.body), (no, node.orelse)):
-                self.block = block
-                self.emit("store", part, self.value(part), data=variable)
-                self.jump(after)
-
-        return self.chosen(node, choose)
-
-    def _compare(self, node: ast.Compare) -> Instr:
+    def _value_Compare(self, node: ast.Compare) -> Instr:
         if len(node.ops) == 1:
             left, right = self.value(node.left), self.value(node.comparators[0])
             return self.emit("compare", node, left, right, data=type(node.ops[0]).__name__)
 
-        def choose(variable: Variable, after: Block) -> None:
-            left = self.value(node.left)
-            for op, right_node in zip(node.ops, node.comparators, strict=True):
-                right = self.value(right_node)
-                outcome = self.emit("compare", node, left, right, data=type(op).__name__)
-                self.emit("store", node, outcome, data=variable)
-                if right_node is node.comparators[-1]:
-                    self.jump(after)
-                    return
-                further = self.new_block()
-                self.branch(outcome, node, further, after)
-                self.block, left = further, right
-
-        return self.chosen(node, choose)
+        variable, after = self.temporary(), self.new_block()
+        left = self.value(node.left)
+        for op, right_node in zip(node.ops, node.comparators, strict=True):
+            right = self.value(right_node)
+            outcome = self.emit("compare", node, left, right, data=type(op).__name__)
+            self.emit("store", node, outcome, data=variable)
+            if right_node is node.comparators[-1]:
+                break
+            further = self.new_block()
+            self.branch(outcome, node, further, after)
+            self.block, left = further, right
+        return self._joined(variable, after, node)
 
     # Values
 
@@ -113,7 +108,7 @@ class ExpressionLowering(Builder):
         if lower is not None:
             found: Instr = lower(node)
             return found
-        # A form of a later Python: its parts are evaluated, its value is not known.
+        # A form of a later Python: its parts are evaluated, its value is unknown.
         parts = [
             self.value(part) for part in ast.iter_child_nodes(node) if isinstance(part, ast.expr)
         ]
@@ -168,7 +163,7 @@ class ExpressionLowering(Builder):
         return self.emit("call", node, function, *values, data=Shape(tuple(names)))
 
     def _super(self, node: ast.Call) -> Instr:
-        """``super()`` knows its class and object from where it stands."""
+        """``super()`` takes its class and object from its place."""
         function = self.emit("external", node.func, data="builtins.super")
         first = self.function.parameters[:1]
         args = [self.emit("load", node, data=variable) for variable in first]
@@ -182,38 +177,23 @@ class ExpressionLowering(Builder):
         operand = self.value(node.operand)
         return self.emit("unary", node, operand, data=type(node.op).__name__)
 
-    def _value_BoolOp(self, node: ast.BoolOp) -> Instr:
-        return self._and_or(node)
-
-    def _value_IfExp(self, node: ast.IfExp) -> Instr:
-        return self._if_else(node)
-
-    def _value_Compare(self, node: ast.Compare) -> Instr:
-        return self._compare(node)
-
-    def _value_Tuple(self, node: ast.Tuple) -> Instr:
-        return self._sequence(node, node.elts, "tuple")
-
-    def _value_List(self, node: ast.List) -> Instr:
-        return self._sequence(node, node.elts, "list")
-
-    def _value_Set(self, node: ast.Set) -> Instr:
-        return self._sequence(node, node.elts, "set")
-
-    def _sequence(self, node: ast.expr, elements: Sequence[ast.expr], kind: str) -> Instr:
-        if any(isinstance(element, ast.Starred) for element in elements):
+    def _value_Tuple(self, node: ast.Tuple | ast.List | ast.Set) -> Instr:
+        kind = type(node).__name__.lower()
+        if any(isinstance(element, ast.Starred) for element in node.elts):
             built = self.emit("build", node, data=kind)
-            for element in elements:
+            for element in node.elts:
                 inner = element.value if isinstance(element, ast.Starred) else element
                 value = self.value(inner)
                 if inner is not element:
                     value = self.emit("next", inner, self.emit("iter", inner, value))
                 self.put(built, None, value, element)
             return built
-        return self.emit("build", node, *[self.value(part) for part in elements], data=kind)
+        return self.emit("build", node, *[self.value(part) for part in node.elts], data=kind)
+
+    _value_List = _value_Set = _value_Tuple
 
     def put(self, container: Instr, key: Instr | None, value: Instr, node: ast.AST) -> None:
-        """Store into a container; without ``key`` somewhere."""
+        """Store into a container, without ``key`` at an unknown place."""
         where = key if key is not None else self.emit("const", node, data=ANY)
         self.emit("setitem", node, container, where, value)
 
@@ -235,11 +215,10 @@ class ExpressionLowering(Builder):
     def _value_FormattedValue(self, node: ast.FormattedValue) -> Instr:
         return self.emit("build", node, self.value(node.value), data="text")
 
-    def _value_Starred(self, node: ast.Starred) -> Instr:
+    def _value_Starred(self, node: ast.Starred | ast.Await) -> Instr:
         return self.emit("copy", node, self.value(node.value))
 
-    def _value_Await(self, node: ast.Await) -> Instr:
-        return self.emit("copy", node, self.value(node.value))
+    _value_Await = _value_Starred
 
     def _value_NamedExpr(self, node: ast.NamedExpr) -> Instr:
         value = self.value(node.value)
@@ -259,38 +238,27 @@ class ExpressionLowering(Builder):
     def _value_Lambda(self, node: ast.Lambda) -> Instr:
         return self.make_function(node, "<lambda>", node.args, Names())
 
-    def _value_ListComp(self, node: ast.ListComp) -> Instr:
-        return self._comprehension(node, node.generators, "list")
-
-    def _value_SetComp(self, node: ast.SetComp) -> Instr:
-        return self._comprehension(node, node.generators, "set")
-
-    def _value_GeneratorExp(self, node: ast.GeneratorExp) -> Instr:
-        return self._comprehension(node, node.generators, "list")
-
-    def _value_DictComp(self, node: ast.DictComp) -> Instr:
-        return self._comprehension(node, node.generators, "dict")
-
-    def _comprehension(
-        self, node: ast.expr, generators: Sequence[ast.comprehension], kind: str
-    ) -> Instr:
-        """The loops of a comprehension stand in the function itself, with names of their own."""
-        built = self.emit("build", node, data=kind)
+    def _value_ListComp(self, node: Comprehension) -> Instr:
+        """The loops of a comprehension are part of the function, with variables of their own."""
+        kinds = {"DictComp": "dict", "SetComp": "set"}
+        built = self.emit("build", node, data=kinds.get(type(node).__name__, "list"))
         after = self.new_block()
         depth = len(self.scope.renamed)
-        self._generate(node, list(generators), built, after)
+        self._generate(node, node.generators, built, after)
         del self.scope.renamed[depth:]
         self.block = after
         return built
 
+    _value_SetComp = _value_GeneratorExp = _value_DictComp = _value_ListComp
+
     def _generate(
-        self, node: ast.expr, generators: list[ast.comprehension], built: Instr, after: Block
+        self, node: Comprehension, generators: list[ast.comprehension], built: Instr, after: Block
     ) -> None:
         if not generators:
             if isinstance(node, ast.DictComp):
                 key = self.value(node.key)
                 self.put(built, key, self.value(node.value), node.value)
-            elif isinstance(node, ast.ListComp | ast.SetComp | ast.GeneratorExp):
+            else:
                 self.put(built, None, self.value(node.elt), node.elt)
             self.jump(after)
             return
@@ -317,7 +285,7 @@ class ExpressionLowering(Builder):
 
     def _filtered(
         self,
-        node: ast.expr,
+        node: Comprehension,
         generator: ast.comprehension,
         rest: list[ast.comprehension],
         built: Instr,
@@ -330,12 +298,12 @@ class ExpressionLowering(Builder):
         self._generate(node, rest, built, after)
 
     def _fresh(self, target: ast.expr) -> dict[str, Variable | object]:
-        """A variable of its own for each name in the target of a comprehension."""
+        """A new variable for each name in the target of a comprehension."""
         names = [part.id for part in ast.walk(target) if isinstance(part, ast.Name)]
         return {name: self.temporary() for name in names}
 
     def known_elements(self, target: ast.expr, source: ast.expr) -> list[dict[str, object]] | None:
-        """What the names of ``target`` are, for each element, where all are constants and few."""
+        """The values of ``target`` for each element, where all are constants and few."""
         if any(
             isinstance(part, ast.Name) and part.id in renamed
             for part in ast.walk(source)
@@ -344,7 +312,7 @@ class ExpressionLowering(Builder):
             return None
         return known_elements(target, source, self.module, UNROLLED)
 
-    # What statements give
+    # What statements define
 
     def store_name(self, name: str, value: Instr, node: ast.AST) -> None:
         """Bind a name."""

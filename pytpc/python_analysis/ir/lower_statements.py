@@ -1,8 +1,7 @@
 """From statements of the syntax tree to instructions and control flow.
 
-A ``finally`` is lowered once: a variable of its own says how it was come to, and a dispatch at its
-end goes on accordingly. Calls are not taken to raise here: ``raising`` adds where those lead to
-that do.
+A ``finally`` is lowered once: a variable of its own stores the way into it, and a dispatch at its
+end continues accordingly. Here no call raises; ``raising`` adds the edges of calls that do.
 """
 
 from __future__ import annotations
@@ -15,11 +14,9 @@ from pytpc.python_analysis.ir.builder import Resolver
 from pytpc.python_analysis.ir.exceptions import ALL, names_taken, taken_by
 from pytpc.python_analysis.ir.instructions import Block, Handler, Instr, Module, Shape, Variable
 from pytpc.python_analysis.ir.lower_expressions import ExpressionLowering
-from pytpc.python_analysis.ir.lower_match import lower_match
 from pytpc.python_analysis.ir.scopes import Scope, names_of
 
 _ENDING = {"exit", "quit", "sys.exit", "os._exit"}
-_MARKING = ("property", "staticmethod", "classmethod", "setter", "getter", "cached_property")
 
 
 @dataclass
@@ -30,7 +27,7 @@ class _Loop:
 
 @dataclass
 class _Finally:
-    """``exits``: where the dispatch at its end goes on, by the number in ``way``."""
+    """``exits``: where the dispatch at its end continues, by the number in ``way``."""
 
     entry: Block
     way: Variable
@@ -39,10 +36,9 @@ class _Finally:
 
 
 class StatementLowering(ExpressionLowering):
-    """Lowers the statements of one function; definitions are its subclass's."""
+    """Lowers the statements of one function; its subclass lowers definitions."""
 
     def __init__(self, scope: Scope, resolve: Resolver, numbers: list[int]) -> None:
-        """Begin with an empty block."""
         self._frames: list[_Loop | _Finally] = []
         super().__init__(scope, resolve, numbers)
         self.function.exit = Block(self.function, -1)
@@ -108,16 +104,17 @@ class StatementLowering(ExpressionLowering):
             case ast.Tuple(elts=parts) | ast.List(elts=parts):
                 starred = any(isinstance(part, ast.Starred) for part in parts)
                 for index, part in enumerate(parts):
-                    if starred:
-                        element = self.emit("next", part, self.emit("iter", part, value))
-                    else:
-                        place = self.emit("const", part, data=index)
-                        element = self.emit("item", part, value, place)
-                    self.assign(part, element)
+                    self.assign(part, self.part(value, index, starred, part))
             case ast.Starred(value=inner):
                 self.assign(inner, self.emit("build", target, value, data="list"))
             case _:
                 pass
+
+    def part(self, container: Instr, index: int, starred: bool, node: ast.AST) -> Instr:
+        """The element ``index`` of what is unpacked; with a star among the targets, any element."""
+        if starred:
+            return self.emit("next", node, self.emit("iter", node, container))
+        return self.emit("item", node, container, self.emit("const", node, data=index))
 
     def _do_Delete(self, node: ast.Delete) -> None:
         for target in node.targets:
@@ -168,7 +165,7 @@ class StatementLowering(ExpressionLowering):
         self._leave_by_raise(name)
 
     def _leave_by_raise(self, name: str | None) -> None:
-        """Go to the handlers that may take an exception of the class ``name``."""
+        """Go to the handlers that may catch an exception of the class ``name``."""
         taken, through = taken_by(self.handlers, name)
         self.block.successors += [handler.block for handler in taken]
         if through:
@@ -193,7 +190,7 @@ class StatementLowering(ExpressionLowering):
         self.handlers = handlers
 
     def _through(self, frame: _Finally) -> None:
-        """Go through a ``finally``, and on in a new block behind it."""
+        """Run a ``finally``, and continue in a new block behind it."""
         number = self.emit("const", ast.Pass(), data=len(frame.exits))
         self.emit("store", ast.Pass(), number, data=frame.way)
         self.jump(frame.entry)
@@ -268,7 +265,7 @@ class StatementLowering(ExpressionLowering):
     _do_AsyncFor = _do_For
 
     def _unrolled(self, node: ast.For | ast.AsyncFor, known: list[dict[str, object]]) -> None:
-        """One body for each of the constants that are iterated over."""
+        """One body for each of the constants that the loop iterates over."""
         after = self.new_block()
         for names in known:
             further = self.new_block()
@@ -353,7 +350,7 @@ class StatementLowering(ExpressionLowering):
         self.block.successors += frame.exits
 
     def _raised_through(self, frame: _Finally, opened: Block) -> Block:
-        """The block by which an exception comes to a ``finally``; behind it it is raised again."""
+        """The block by which an exception enters a ``finally``, behind which it is raised again."""
         before = self.block
         block = self.new_block()
         block.opened = opened
@@ -366,11 +363,8 @@ class StatementLowering(ExpressionLowering):
         self.block = before
         return block
 
-    def _do_Match(self, node: ast.Match) -> None:
-        lower_match(self, node)
-
 
 def _rebinds(node: ast.For | ast.AsyncFor) -> bool:
-    """True where the loop's body binds the loop's own names."""
+    """True where the loop's body binds the names of the loop."""
     own = {part.id for part in ast.walk(node.target) if isinstance(part, ast.Name)}
     return bool(own & names_of(node.body).bound)

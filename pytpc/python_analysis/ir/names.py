@@ -1,4 +1,4 @@
-"""Names of variables, and of attributes as far as they are known before anything is solved."""
+"""Names of variables, and of attributes as far as they are known before points-to."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from pytpc.python_analysis.ir.instructions import Instr, Variable
 
 @dataclass(frozen=True)
 class NamePattern:
-    """A name of which the beginning and the end are known; both empty where nothing is."""
+    """A name with a known beginning and end; both are empty where nothing is known."""
 
     start: str = ""
     end: str = ""
 
     def takes(self, name: str) -> bool:
-        """True where ``name`` may be meant."""
+        """True where it may be ``name``."""
         fits = name.startswith(self.start) and name.endswith(self.end)
         return fits and len(name) >= len(self.start) + len(self.end)
 
 
 def attribute_named(instr: Instr) -> str | NamePattern:
-    """The name that a value is, or what is known of it: ``"max_" + axis``, ``f"{axis}_limit"``."""
+    """A value as a name, or what is known of it: ``"max_" + axis``, ``f"{axis}_limit"``."""
     if instr.op == "const" and isinstance(instr.data, str):
         return instr.data
     is_put_together = (instr.op, instr.data) in (("binary", "Add"), ("build", "text"))
@@ -37,7 +37,7 @@ def attribute_named(instr: Instr) -> str | NamePattern:
 
 
 def named_variable(instr: Instr) -> str | None:
-    """The variable or attribute whose value an instruction has."""
+    """The variable or attribute that an instruction has the value of."""
     if instr.op == "load" and isinstance(instr.data, Variable):
         return None if instr.data.name.startswith("<") else instr.data.name
     if instr.op == "attr":

@@ -1,70 +1,60 @@
-"""A link unit of Python: a script and the modules of the workspace that it imports."""
+"""The modules of a link unit of Python, loaded and lowered."""
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
 from pytpc.base.errors import InputError
 from pytpc.python_analysis.ir.instructions import Function, Instr, Module
 from pytpc.python_analysis.ir.lower import lower_module
-from pytpc.python_analysis.sources.packages import Entry
-from pytpc.python_analysis.sources.source_files import module_files, parse
+from pytpc.python_analysis.sources.scripts import Entry
+from pytpc.python_analysis.sources.source_files import folder_above, module_files, parse
 
 
 @dataclass(frozen=True)
 class Unread:
-    """A module that is imported and cannot be read or parsed; ``path`` as modules have it."""
+    """An imported module that cannot be read or parsed; ``path`` as in `Module`."""
 
     path: str
     error: InputError
 
 
-@dataclass
 class Program:
-    """All modules of a link unit, the script's first; ``name`` and ``package`` as in the JSON."""
+    """A script and the modules of the workspace that it imports, the script first in ``modules``.
 
-    name: str
-    package: str
-    root: Path
-    modules: list[Module] = field(default_factory=list)
-    faults: list[Unread] = field(default_factory=list)
+    ``name`` and ``package`` are those of the JSON. ``faults``: the modules that cannot be read.
+    """
+
+    def __init__(self, entry: Entry) -> None:
+        """``entry`` says where the program begins and where modules are looked for."""
+        self.entry = entry
+        self.name, self.package, self.root = entry.name, entry.package, entry.root
+        self.modules: list[Module] = []
+        self.faults: list[Unread] = []
+        self._known: dict[Path, Module | None] = {}
+        self._numbers = [0]
 
     @property
     def functions(self) -> list[Function]:
-        """Those of all modules."""
+        """The functions of all modules."""
         return [function for module in self.modules for function in module.functions]
 
     @cached_property
     def attributes(self) -> list[str]:
-        """The names of all attributes that are stored into, sorted; for when all is loaded."""
+        """The names of all attributes that are stored, sorted; use it when all is loaded."""
         names = {str(instr.data) for instr in self.instructions() if instr.op == "setattr"}
         return sorted(names)
 
     def instructions(self) -> list[Instr]:
-        """Those of all functions, in order."""
+        """The instructions of all functions, in order."""
         return [instr for function in self.functions for instr in function.instructions()]
 
-    def relative(self, path: Path) -> str:
-        """A file as static information names it: outside of the package by its absolute path."""
-        return str(path.relative_to(self.root) if path.is_relative_to(self.root) else path)
-
-
-class Loader:
-    """Loads a script and, as it is lowered, what it imports."""
-
-    def __init__(self, program: Program, entry: Entry) -> None:
-        """``entry`` says where the program begins and where modules are looked for."""
-        self.program = program
-        self.entry = entry
-        self._known: dict[Path, Module | None] = {}
-        self._numbers = [0]
-
-    def load(self) -> Program:
-        """Load the script and all that follows from it.
+    def load(self) -> None:
+        """Load the script and, as it is lowered, what it imports.
 
         Raises:
             InputError: the script cannot be read or parsed.
@@ -72,26 +62,28 @@ class Loader:
         script = self.entry.script.absolute()
         source, tree = parse(script)
         self._add(script, self.entry.module, source, _begun(tree, self.entry.begin))
-        for module in self.program.modules:
+        for module in self.modules:
             lower_module(module, self.resolve, self._numbers)
-        return self.program
+
+    def _relative(self, path: Path) -> str:
+        """A file as static information names it: by its absolute path outside the package."""
+        return str(path.relative_to(self.root) if path.is_relative_to(self.root) else path)
 
     def _add(self, path: Path, name: str, source: str, tree: ast.Module) -> Module:
-        is_package = path.name == "__init__.py"
-        module = Module(name, self.program.relative(path), source, tree, is_package)
+        module = Module(name, self._relative(path), source, tree)
         self._known[path] = module
-        self.program.modules.append(module)
+        self.modules.append(module)
         return module
 
     def _module(self, path: Path, name: str) -> Module | None:
-        """The module of a file; None, once and for all, where it cannot be parsed."""
+        """The module of a file; None where it cannot be parsed, which is tried once."""
         path = path.absolute()
         if path not in self._known:
             try:
                 return self._add(path, name, *parse(path))
             except InputError as error:
                 self._known[path] = None
-                self.program.faults.append(Unread(self.program.relative(path), error))
+                self.faults.append(Unread(self._relative(path), error))
         return self._known[path]
 
     def resolve(self, user: Module, name: str, dots: int) -> Module | str:
@@ -100,9 +92,7 @@ class Loader:
             for path in self.entry.places(name):
                 return self._module(path, name) or name
             return name
-        folder = (self.program.root / user.path).parent
-        for _ in range(dots - 1):
-            folder = folder.parent
+        folder = folder_above(self.root / user.path, dots)
         if not name:
             start = folder / "__init__.py"
             found = self._module(start, folder.name) if start.is_file() else None
@@ -114,9 +104,9 @@ class Loader:
 
 
 def _begun(tree: ast.Module, begin: str) -> ast.Module:
-    """The module with a call of the function ``begin`` at its end, as an entry point calls it.
+    """The module with a call of the function ``begin`` at its end, as for an entry point.
 
-    The call stands where the function's name is bound.
+    The call has the position at which the function's name is bound.
     """
     if not begin:
         return tree

@@ -1,4 +1,4 @@
-"""Which variable a name means: Python's rules of scopes."""
+"""Which variable a name means: Python's scoping rules."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _COMPREHENSIONS = (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
 
 @dataclass
 class Names:
-    """The names that a piece of code binds, and those that it declares to be others'."""
+    """The names that a piece of code binds, and those that it declares as global or nonlocal."""
 
     bound: set[str] = field(default_factory=set)
     global_: set[str] = field(default_factory=set)
@@ -27,7 +27,7 @@ class Names:
 
 
 def names_of(body: Iterable[ast.AST]) -> Names:
-    """What ``body`` binds, without what stands in functions and classes in it."""
+    """What ``body`` binds, without the functions and classes in it."""
     names = Names()
     waiting = list(body)
     while waiting:
@@ -68,9 +68,9 @@ def _note(node: ast.AST, names: Names) -> None:
 
 
 class Scope:
-    """Names of one function, seen from inside; ``parent`` is what encloses it.
+    """The names of one function, seen from inside; ``parent`` encloses it.
 
-    In the body of a class ``class_value`` is the class: names bound there are its attributes.
+    In the body of a class ``class_value`` is the class, whose attributes are the names bound there.
     ``renamed`` are the variables of comprehensions and unrolled loops, the innermost last.
     """
 
@@ -81,7 +81,6 @@ class Scope:
         parent: Scope | None,
         class_value: Instr | None = None,
     ) -> None:
-        """A scope in which nothing is renamed."""
         self.function = function
         self.names = names
         self.parent = parent
@@ -89,7 +88,7 @@ class Scope:
         self.renamed: list[dict[str, Variable | object]] = []
 
     def own_attribute(self, name: str) -> bool:
-        """True where ``name`` is bound in the class body that this is."""
+        """True where this is a class body that binds ``name``."""
         return self.class_value is not None and name in self.names.local
 
     def variable(self, name: str) -> Variable | None:

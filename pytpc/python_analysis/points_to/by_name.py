@@ -1,4 +1,4 @@
-"""``getattr`` and ``setattr``; by an unknown name all attributes that fit it."""
+"""``getattr`` and ``setattr``; an unknown name means all attributes that fit it."""
 
 from __future__ import annotations
 

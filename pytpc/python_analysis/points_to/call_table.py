@@ -15,14 +15,13 @@ class CallTable:
     """Who calls whom.
 
     ``callees``: an instruction -> the functions that it runs. ``callers``: the reverse.
-    ``outside``: an instruction -> the dotted names that it calls, each with the object whose method
-    it is. ``given``: a call and a parameter -> the values that it gives to it, its default among
-    them where it gives none. ``registered``: a function -> the calls that hand it to something
-    outside, which may run it later.
+    ``outside``: an instruction -> the dotted names that it calls, each with the object if it is a
+    method. ``given``: a call and a parameter -> the values that the parameter gets, or its default.
+    ``registered``: a function -> the calls that pass it to code outside the sources, which may run
+    it later.
     """
 
     def __init__(self) -> None:
-        """Nothing is called yet."""
         self.callees: dict[Instr, dict[Function, None]] = {}
         self.callers: dict[Function, dict[Instr, None]] = {}
         self.outside: dict[Instr, dict[tuple[str, Obj | None], None]] = {}
@@ -47,7 +46,7 @@ class CallTable:
             action(value)
 
     def may_unpack(self, site: Instr, param: Instr) -> bool:
-        """True where what ``site`` unpacks may be the value of ``param``: no argument is."""
+        """True where an unpacked argument of ``site`` may be the value of ``param``."""
         return param in self.given.get((site, param), ())
 
     def when_site(self, param: Instr, action: Callable[[Instr], None]) -> None:
@@ -67,3 +66,34 @@ class CallTable:
             known.append(value)
             for action in list(self._awaiting.get((site, param), ())):
                 action(value)
+
+
+def kept_as_given(instr: Instr) -> Instr | None:
+    """The parameter of ``__init__`` whose value ``self.name = parameter`` keeps.
+
+    Objects of one class are distinguished by such values.
+    """
+    if instr.op != "setattr":
+        return None
+    owner, value = instr.args
+    first = unchanged_parameter(owner)
+    found = unchanged_parameter(value)
+    if first is None or first.data != 0:
+        return None
+    return found
+
+
+def unchanged_parameter(value: Instr) -> Instr | None:
+    """The parameter of ``__init__`` that a value is, if nothing else is stored in it."""
+    function = value.function
+    if value.op != "load" or value.data not in function.parameters:
+        return None
+    if function.owner is None or not function.qualname.endswith(".__init__"):
+        return None
+    place = function.parameters.index(value.data)
+    if place in (function.vararg, function.kwarg):
+        return None
+    stores = [
+        each for each in function.instructions() if each.op == "store" and each.data is value.data
+    ]
+    return function.param_instrs[place] if len(stores) == 1 else None

@@ -1,7 +1,8 @@
-"""What a call does: arguments to parameters, results to the call, callbacks to who runs them."""
+"""The effect of calls: arguments to parameters, results to calls, callbacks to their callers."""
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from pytpc.python_analysis.ir.instructions import ANY, ClassInfo, Function, Instr, Shape
@@ -16,7 +17,7 @@ _SYNCHRONOUS = ("builtins.", "functools.", "itertools.", "numpy.")
 _PUTTING = {"append", "appendleft", "add", "insert", "put", "put_nowait", "setdefault", "push"}
 _MERGING = {"extend", "update", "extendleft"}
 _TAKING = {"pop", "popleft", "get", "get_nowait", "setdefault", "popitem", "__getitem__"}
-# Keywords that say how a call waits: what they are given is not kept, and not what comes back.
+# Keywords that say how a call waits: their values are neither kept nor returned.
 _PATIENCE = ("block", "timeout")
 _COPYING = {
     f"builtins.{name}"
@@ -25,14 +26,12 @@ _COPYING = {
 _CHOOSING = {f"builtins.{name}" for name in ("any", "all", "sum", "min", "max", "next")}
 _FEW = 16
 _HOLDING = ("container", "namespace")
-_RUNNING = {"target", "args", "kwargs", "callback_args", "function"}
 
 
 class Calls(CallTable):
-    """Adds to the table what calls do."""
+    """Adds calls to the table."""
 
     def __init__(self, flow: PointsTo) -> None:
-        """Nothing is called yet."""
         super().__init__()
         self.flow = flow
         self._done: set[tuple[Instr, Obj]] = set()
@@ -76,7 +75,7 @@ class Calls(CallTable):
             self._link(instr, found.function, owner, given)
 
     def run_method(self, instr: Instr, owner: Obj, name: str, given: list[Given]) -> None:
-        """``instr`` runs the method ``name`` of an object of an own class, where it has one."""
+        """``instr`` runs the method ``name`` of an object of an own class, if there is one."""
         info = owner.class_info
         found = self.flow.lookup(info, name) if info is not None else None
         if found is not None:
@@ -129,7 +128,7 @@ class Calls(CallTable):
         self._return(instr, function, instr)
 
     def _return(self, instr: Instr, function: Function, to: Instr) -> None:
-        """What ``function`` returns or yields comes to ``to``."""
+        """The results and yielded values of ``function`` come to ``to``."""
         flow = self.flow
         if to.op == "setattr":
             return
@@ -143,7 +142,7 @@ class Calls(CallTable):
                 flow.write(made, SOME, each.args[0], each)
 
     def _results_of(self, function: Function) -> list[Instr]:
-        """What gives a function's results, looked for once, however many calls it has."""
+        """The instructions that return or yield, searched once for each function."""
         if function not in self._results:
             self._results[function] = [
                 each for each in function.instructions() if each.op in ("return", "yield")
@@ -184,7 +183,7 @@ class Calls(CallTable):
         for number, param in enumerate(params):
             if (instr, param) in self.given or number < first:
                 continue
-            # Its default; or what is unpacked, which all calls share.
+            # Its default, or an unpacked value, which all calls share.
             if unpacked or instr.op != "call":
                 self.give(instr, param, param)
             for default in flow.defaults.get(param, ()):
@@ -203,17 +202,12 @@ class Calls(CallTable):
 
     def _unpack(self, value: Instr, params: list[Instr]) -> None:
         for offset, param in enumerate(params):
-            self.flow.when(
-                value,
-                lambda found, param=param, offset=offset: self.flow.read_element(  # type: ignore[misc]
-                    found, offset, param
-                ),
-            )
+            self.flow.when(value, partial(self.flow.read_element, key=offset, to=param))
 
     def _unpack_names(
         self, value: Instr, function: Function, first: int, taken: set[str | None]
     ) -> None:
-        """The entries of ``**value`` come to the parameters from ``first`` on, but the taken."""
+        """Entries of ``**value`` come to the parameters from ``first`` on that are not taken."""
         if function.kwarg is not None:
             self.flow.copy(value, function.param_instrs[function.kwarg])
         for place, variable in enumerate(function.parameters):
@@ -222,12 +216,7 @@ class Calls(CallTable):
             if place in (function.vararg, function.kwarg):
                 continue
             param = function.param_instrs[place]
-            self.flow.when(
-                value,
-                lambda found, param=param, name=variable.name: self.flow.read_element(  # type: ignore[misc]
-                    found, name, param
-                ),
-            )
+            self.flow.when(value, partial(self.flow.read_element, key=variable.name, to=param))
 
     # Calls of what is outside the sources
 
@@ -241,7 +230,8 @@ class Calls(CallTable):
             self._super(instr)
             return
         elif path in ("functools.partial", "functools.partialmethod") and given:
-            flow.when(given[0][1], lambda found: flow.add(instr, [flow.heap.partial(found, instr)]))
+            get = partial(flow.heap.get, "partial", site=instr)
+            flow.when(given[0][1], lambda found: flow.add(instr, [get(parent=found)]))
             return
         elif path in ("builtins.getattr", "builtins.setattr"):
             by_name(flow, instr, path, given)
@@ -256,7 +246,7 @@ class Calls(CallTable):
                 flow.when(value, lambda found: flow.read_element(found, ANY, instr))
         elif name == "__enter__" and owner is not None:
             flow.add(instr, [owner])
-            # A generator that `contextmanager` made one of: what it yields.
+            # `contextmanager` made it of a generator: what that yields.
             if owner.kind == "container":
                 flow.read_element(owner, ANY, instr)
         elif owner is not None:
@@ -277,7 +267,8 @@ class Calls(CallTable):
             return
         flow = self.flow
         owner = arguments[-1][1]
-        flow.when(owner, lambda found: flow.add(instr, [flow.heap.super_(info, found)]))
+        get = partial(flow.heap.get, "super", ref=info)
+        flow.when(owner, lambda found: flow.add(instr, [get(parent=found)]))
 
     def _copied(self, instr: Instr, given: list[Given]) -> None:
         """A new container with the elements of another."""
@@ -314,7 +305,7 @@ class Calls(CallTable):
         flow.write(to, SOME, flow.slot(source, EVERY), instr)
 
     def _on_object(self, instr: Instr, name: str, owner: Obj, given: list[Given]) -> None:
-        """A method of a container, or of something made outside: it may keep what it is given."""
+        """A method of a container or of an outside object, which may keep its arguments."""
         flow = self.flow
         values = [value for keyword, value in given if keyword not in ("*", "**", *_PATIENCE)]
         if values and name == "get" and isinstance(values[0].data, bool):
@@ -360,7 +351,7 @@ class Calls(CallTable):
             flow.slot(made, SOME)
 
     def _hand(self, instr: Instr, path: str, value: Instr, given: list[Given]) -> None:
-        """Functions that are handed to something outside may be run by it."""
+        """Code outside the sources may run the functions that it gets."""
         others = [each for each in given if each[1] is not value]
         self.flow.when(value, lambda found: self._register(instr, path, found, others))
 
@@ -385,9 +376,8 @@ class Calls(CallTable):
             self._run_now(instr, function, others, first)
             return
         for keyword, value in others:
-            if keyword in _RUNNING:
-                for offset, param in enumerate(function.param_instrs[first:]):
-                    self._started_with(keyword, value, param, offset)
+            for offset, param in enumerate(function.param_instrs[first:]):
+                self._started_with(keyword, value, param, offset)
 
     def _started_with(self, keyword: str | None, value: Instr, param: Instr, offset: int) -> None:
         if keyword == "callback_args" and offset == 1:
@@ -396,11 +386,11 @@ class Calls(CallTable):
             self.flow.when(value, lambda found: self.flow.read_element(found, offset, param))
 
     def _run_now(self, instr: Instr, function: Function, others: list[Given], first: int) -> None:
-        """``map``, ``filter``, ``sorted`` and their kin: elements in, results out."""
+        """``map``, ``filter``, ``sorted`` and the like: elements in, results out."""
         flow = self.flow
         for _, value in others:
             for param in function.param_instrs[first:]:
-                flow.when(value, lambda found, param=param: flow.read_element(found, ANY, param))  # type: ignore[misc]
+                flow.when(value, partial(flow.read_element, key=ANY, to=param))
         made = flow.heap.container("list", instr)
         flow.add(instr, [made])
         for each in self._results_of(function):

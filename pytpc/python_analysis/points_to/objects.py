@@ -1,22 +1,22 @@
-"""What a value may be: the abstract objects of the points-to analysis."""
+"""The abstract objects of the points-to analysis."""
 
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable
 from dataclasses import dataclass, field
 
-from pytpc.python_analysis.ir.instructions import ClassInfo, Function, Instr, Module
+from pytpc.python_analysis.ir.instructions import ClassInfo, Function, Instr
 
 EVERY = "[+]"
-"""The slot that stands for all elements of a container, where one is read by an unknown key."""
+"""The slot that stands for all elements of a container, for reads by an unknown key."""
 SOME = "[*]"
 """The slot of the elements at unknown keys."""
 UNNAMED = "<unnamed>"
 """The slot of an object's attributes that are set by unknown names."""
 ATTRIBUTES = "<attributes>"
-"""The slot that stands for all of them, where one is read by an unknown name."""
+"""The slot that stands for all attributes, for reads by an unknown name."""
 OTHER = "<other>"
-"""The dotted name of what no rule is about."""
+"""The dotted name of everything without a rule."""
 _DEEPEST = 2
 
 
@@ -24,12 +24,12 @@ _DEEPEST = 2
 class Obj:
     """An abstract object.
 
-    ``kind`` and what ``ref`` and ``parent`` are: ``function`` (Function), ``method`` (Function,
-    the object), ``class`` (ClassInfo), ``instance`` (ClassInfo), ``module`` (Module), ``external``
-    (by ``path``), ``made`` (by calling what is outside the sources: ``path``), ``part`` (an
-    attribute of something made: ``path``, the object), ``container``, ``partial`` (the call that
-    made it, the function), ``super`` (ClassInfo after which is looked up, the object),
-    ``namespace`` (an object's ``__dict__``: the object). ``site`` is the instruction that makes it.
+    ``kind``, and the meaning of ``ref`` and ``parent``: ``function`` (Function), ``method``
+    (Function, the object), ``class`` (ClassInfo), ``instance`` (ClassInfo), ``module`` (Module),
+    ``external`` (by ``path``), ``made`` (by a call of ``path`` outside the sources), ``part`` (an
+    attribute of something made: ``path``, the object), ``container``, ``partial`` (the function),
+    ``super`` (the ClassInfo after which it looks attributes up, the object), ``namespace`` (an
+    object's ``__dict__``: the object). ``site`` is the instruction that makes it.
     """
 
     kind: str
@@ -42,12 +42,11 @@ class Obj:
     slots: dict[str, None] = field(default_factory=dict)
 
     def __repr__(self) -> str:
-        """For people who debug."""
         return f"<{self.kind} {self.path or self.ref}>"
 
     @property
     def function(self) -> Function | None:
-        """The function that it is, or is bound to."""
+        """The function that it is or is bound to."""
         return self.ref if isinstance(self.ref, Function) else None
 
     @property
@@ -61,7 +60,7 @@ Field = tuple[Obj, str]
 
 
 class Heap:
-    """Makes abstract objects, each once."""
+    """Makes each abstract object once."""
 
     def __init__(self, paths: Iterable[str]) -> None:
         """``paths`` are the dotted names that the rules are about."""
@@ -71,7 +70,7 @@ class Heap:
             parts = path.split(".")
             self._about.update(".".join(parts[:end]) for end in range(1, len(parts) + 1))
 
-    def _get(
+    def get(
         self,
         kind: str,
         path: str = "",
@@ -79,54 +78,23 @@ class Heap:
         parent: Obj | None = None,
         site: Instr | None = None,
     ) -> Obj:
+        """The object with these fields (see `Obj`)."""
         key = (kind, path, id(ref), parent, site)
         if key not in self._known:
             self._known[key] = Obj(kind, len(self._known), path, ref, parent, site)
         return self._known[key]
 
-    def function(self, function: Function) -> Obj:
-        """A function."""
-        return self._get("function", ref=function)
-
-    def method(self, function: Function, owner: Obj) -> Obj:
-        """A function bound to an object."""
-        return self._get("method", ref=function, parent=owner)
-
     def class_(self, info: ClassInfo) -> Obj:
         """A class of the sources."""
-        return self._get("class", ref=info)
-
-    def instance(self, info: ClassInfo, site: Instr | None) -> Obj:
-        """What calling a class gives at ``site``; None where no call is known."""
-        return self._get("instance", ref=info, site=site)
-
-    def module(self, module: Module) -> Obj:
-        """A module of the sources."""
-        return self._get("module", ref=module)
-
-    def external(self, path: str) -> Obj:
-        """Something outside the sources, by its dotted name."""
-        return self._get("external", path)
+        return self.get("class", ref=info)
 
     def made(self, path: str, site: Instr) -> Obj:
-        """What something outside the sources gives when it is called at ``site``."""
-        return self._get("made", path if path in self._about else OTHER, site=site)
+        """The object that a call outside the sources returns at ``site``."""
+        return self.get("made", path if path in self._about else OTHER, site=site)
 
     def container(self, kind: str, site: Instr) -> Obj:
         """A list, tuple, set or dict."""
-        return self._get("container", kind, site=site)
-
-    def partial(self, function: Obj, site: Instr) -> Obj:
-        """A function with arguments that are given already."""
-        return self._get("partial", parent=function, site=site)
-
-    def super_(self, info: ClassInfo, owner: Obj) -> Obj:
-        """``super()`` in a method of ``info`` for the object ``owner``."""
-        return self._get("super", ref=info, parent=owner)
-
-    def namespace(self, owner: Obj) -> Obj:
-        """The attributes of ``owner`` as a dict."""
-        return self._get("namespace", parent=owner)
+        return self.get("container", kind, site=site)
 
     def part(self, owner: Obj, name: str, path: str) -> Obj:
         """The attribute ``name`` of something made outside the sources."""
@@ -138,11 +106,11 @@ class Heap:
         full = f"{path}.{name}"
         if full not in self._about and owner.kind not in ("container", "namespace"):
             full = f"{OTHER}.{name}"
-        found = self._get("part", full, parent=owner)
+        found = self.get("part", full, parent=owner)
         owner.parts[name] = found
         return found
 
 
 def element(key: object) -> str:
-    """The slot of an element at a constant key."""
+    """The slot of the element at a constant key."""
     return f"[{key!r}]"

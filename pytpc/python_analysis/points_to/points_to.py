@@ -1,9 +1,8 @@
 """Which objects a value may be, and what a call calls: a points-to analysis with fields.
 
-L. Andersen, "Program Analysis and Specialization for the C Programming Language", 1994, on demand
-of the call graph: constraints are added as functions and classes come to calls. It does not mind
-the order of statements (``reaching`` does), and tells objects of one class apart by where they are
-made.
+L. Andersen, "Program Analysis and Specialization for the C Programming Language", 1994. Constraints
+are added on demand, as calls of functions and classes are found. It ignores the order of statements
+(``reaching`` does not), and distinguishes objects of one class by the place that makes them.
 """
 
 from __future__ import annotations
@@ -12,24 +11,23 @@ from collections.abc import Callable
 
 from pytpc.python_analysis.ir.instructions import ANY, ClassInfo, Function, Instr, Module, Variable
 from pytpc.python_analysis.ir.program import Program
+from pytpc.python_analysis.points_to.call_table import kept_as_given, unchanged_parameter
 from pytpc.python_analysis.points_to.calls import Calls
-from pytpc.python_analysis.points_to.given import kept_as_given, unchanged_parameter
 from pytpc.python_analysis.points_to.objects import SOME, Heap, Obj, element
 from pytpc.python_analysis.points_to.solver import Solver
 from pytpc.python_analysis.rules_file import Rules
 
 _STEPS = 5
 _LEAST_STEPS = 100_000
-"""For each instruction, and in any case: how many steps the analysis may take."""
+"""The number of steps that the analysis may take: for each instruction, and at least."""
 _PLACES = 64
-"""Objects of one class are told apart at so many places where they are made."""
+"""Objects of one class are distinguished at this many places that make them."""
 
 
 class PointsTo(Solver):
-    """The constraints of a program, solved. ``calls``: who calls whom."""
+    """The solved constraints of a program. ``calls``: who calls whom."""
 
     def __init__(self, program: Program, rules: Rules) -> None:
-        """Solve all constraints of ``program``."""
         super().__init__(_LEAST_STEPS + _STEPS * len(program.instructions()))
         self.program = program
         self.rules = rules
@@ -44,7 +42,9 @@ class PointsTo(Solver):
         self.calls = Calls(self)
         self._late: list[Callable[[], None]] | None = []
         for instr in program.instructions():
-            self._constrain(instr)
+            handle = getattr(self, f"_on_{instr.op}", None)
+            if handle is not None:
+                handle(instr)
         self._solve()
         late, self._late = self._late, None
         for action in late or ():
@@ -55,7 +55,7 @@ class PointsTo(Solver):
     # What is asked
 
     def mro(self, info: ClassInfo) -> list[ClassInfo | str]:
-        """The classes in which attributes are looked up, those outside by their dotted names."""
+        """The classes in which attributes are looked up; those outside by their dotted names."""
         if info not in self._frozen:
             self._frozen[info] = [info]
             order: dict[ClassInfo | str, None] = {info: None}
@@ -80,7 +80,7 @@ class PointsTo(Solver):
         return None
 
     def _complete(self) -> None:
-        """Make an object of each class that nobody is seen to make."""
+        """Make an object of each class that no call makes."""
         for module in self.program.modules:
             for info in module.classes:
                 if not self.instances.get(info):
@@ -88,11 +88,11 @@ class PointsTo(Solver):
         self._solve()
 
     def instantiate(self, info: ClassInfo, site: Instr | None) -> Obj:
-        """An object of a class; all its methods may be called on it."""
+        """An object of a class, all of whose methods may be called."""
         known = self.instances.setdefault(info, {})
-        made = self.heap.instance(info, site)
+        made = self.heap.get("instance", ref=info, site=site)
         if made not in known and len(known) >= _PLACES:
-            made = self.heap.instance(info, None)
+            made = self.heap.get("instance", ref=info)
         if made in known:
             return made
         known[made] = None
@@ -101,7 +101,7 @@ class PointsTo(Solver):
             if not isinstance(each, ClassInfo):
                 continue
             own = self.heap.class_(each)
-            # What a subclass overrides is run by `super()` alone, which hands the object over.
+            # Only `super()` runs an overridden method, and it passes the object.
             names = [name for name in self.class_names.get(each, ()) if name not in hidden]
             hidden.update(names)
             for name in names:
@@ -118,17 +118,12 @@ class PointsTo(Solver):
                 first = self.heap.class_(owner.class_info)
             self.add(function.param_instrs[0], [first])
 
-    def _constrain(self, instr: Instr) -> None:
-        handle = getattr(self, f"_on_{instr.op}", None)
-        if handle is not None:
-            handle(instr)
-
     def _on_external(self, instr: Instr) -> None:
-        self.add(instr, [self.heap.external(str(instr.data))])
+        self.add(instr, [self.heap.get("external", str(instr.data))])
 
     def _on_module(self, instr: Instr) -> None:
         assert isinstance(instr.data, Module)
-        self.add(instr, [self.heap.module(instr.data)])
+        self.add(instr, [self.heap.get("module", ref=instr.data)])
 
     def _on_load(self, instr: Instr) -> None:
         self.copy(instr.data, instr)
@@ -141,7 +136,7 @@ class PointsTo(Solver):
 
     def _on_function(self, instr: Instr) -> None:
         assert isinstance(instr.data, Function)
-        self.add(instr, [self.heap.function(instr.data)])
+        self.add(instr, [self.heap.get("function", ref=instr.data)])
         for place, default in instr.data.defaults.items():
             if place < len(instr.data.param_instrs):
                 param = instr.data.param_instrs[place]
@@ -166,9 +161,7 @@ class PointsTo(Solver):
     def store_attribute(self, owner: Obj, name: str, value: Instr, instr: Instr) -> None:
         """``instr`` stores ``value`` as the attribute ``name``."""
         if owner.kind == "module" and isinstance(owner.ref, Module) and owner.ref.body:
-            variable = owner.ref.body.variables.setdefault(name, Variable(name, owner.ref.body))
-            variable.shared = True
-            self.copy(value, variable)
+            self.copy(value, _variable_of(owner.ref.body, name))
             self.writers.setdefault((owner, name), {})[instr] = None
             return
         if owner.kind == "super" and owner.parent is not None:
@@ -186,9 +179,9 @@ class PointsTo(Solver):
         self._keep(owner, param, name, instr)
 
     def _keep(self, owner: Obj, param: Instr, name: str, instr: Instr) -> None:
-        """``self.name = param`` in ``__init__``: objects are told apart by what each is made with.
+        """``self.name = param`` in ``__init__``: the arguments of each call distinguish objects.
 
-        The ``__init__`` of a base class gets it from that of the object's own class.
+        The ``__init__`` of a base class gets them from that of the object's own class.
         """
         info, made = param.function.owner, owner.class_info
         assert owner.site is not None
@@ -217,10 +210,10 @@ class PointsTo(Solver):
 
     def load_attribute(self, owner: Obj, name: str, instr: Instr) -> None:
         """``instr`` has the value of the attribute ``name``."""
-        if owner.kind == "module" and isinstance(owner.ref, Module):
-            self._module_attribute(owner.ref, name, instr)
+        if owner.kind == "module" and isinstance(owner.ref, Module) and owner.ref.body:
+            self.copy(_variable_of(owner.ref.body, name), instr)
         elif owner.kind == "external":
-            self.add(instr, [self.heap.external(f"{owner.path}.{name}")])
+            self.add(instr, [self.heap.get("external", f"{owner.path}.{name}")])
         elif owner.kind in ("made", "part", "container"):
             self.copy(self.slot(owner, name), instr)
             path = self.rules.class_of(owner.path)
@@ -228,7 +221,7 @@ class PointsTo(Solver):
         elif owner.kind == "class" and owner.class_info is not None:
             self.later(lambda: self._class_attribute(owner, name, instr))
         elif owner.kind == "instance" and name == "__dict__":
-            self.add(instr, [self.heap.namespace(owner)])
+            self.add(instr, [self.heap.get("namespace", parent=owner)])
         elif owner.kind == "namespace":
             self.add(instr, [self.heap.part(owner, name, "builtins.dict")])
         elif owner.kind == "instance":
@@ -244,12 +237,6 @@ class PointsTo(Solver):
         else:
             action()
 
-    def _module_attribute(self, module: Module, name: str, instr: Instr) -> None:
-        if module.body is not None:
-            variable = module.body.variables.setdefault(name, Variable(name, module.body))
-            variable.shared = True
-            self.copy(variable, instr)
-
     def _class_attribute(self, owner: Obj, name: str, instr: Instr) -> None:
         info = owner.class_info
         assert info is not None
@@ -264,7 +251,7 @@ class PointsTo(Solver):
     def _class_method(self, found: Obj, owner: Obj, instr: Instr) -> None:
         function = found.function if found.kind == "function" else None
         if function is not None and "classmethod" in function.decorators:
-            self.add(instr, [self.heap.method(function, owner)])
+            self.add(instr, [self.heap.get("method", ref=function, parent=owner)])
 
     def _looked_up(
         self, owner: Obj, real: Obj, after: ClassInfo | None, name: str, instr: Instr
@@ -277,8 +264,8 @@ class PointsTo(Solver):
             self._outside(owner, name, instr, info)
             return
         field = self.slot(self.heap.class_(found), name)
-        # Functions are bound to the object; all else is as it is in the class, unless the object
-        # has its own.
+        # Functions are bound to the object; other attributes are the class's, unless the object has
+        # its own.
         if not self._is_hidden(info, name):
             self._unbound.add((field, instr))
             self.copy(field, instr)
@@ -299,16 +286,17 @@ class PointsTo(Solver):
         return name in self._always[info]
 
     def _bind(self, found: Obj, owner: Obj, instr: Instr) -> None:
-        """An attribute of a class as one of its object."""
+        """An attribute of a class, read from an object of it."""
         function = found.function if found.kind == "function" else None
         if function is None or "staticmethod" in function.decorators:
             self.add(instr, [found])
         elif "classmethod" in function.decorators and owner.class_info is not None:
-            self.add(instr, [self.heap.method(function, self.heap.class_(owner.class_info))])
+            own = self.heap.class_(owner.class_info)
+            self.add(instr, [self.heap.get("method", ref=function, parent=own)])
         elif {"property", "cached_property", "getter"} & set(function.decorators):
             self.calls.bound(instr, found, owner, [])
         else:
-            self.add(instr, [self.heap.method(function, owner)])
+            self.add(instr, [self.heap.get("method", ref=function, parent=owner)])
 
     def _outside(self, owner: Obj, name: str, instr: Instr, info: ClassInfo) -> None:
         for base in self.mro(info):
@@ -369,7 +357,7 @@ class PointsTo(Solver):
         self._operator(instr, instr.args[0], name, [])
 
     def _operator(self, instr: Instr, value: Instr, name: str, others: list[Instr]) -> None:
-        """The method of an own class that an operator runs."""
+        """Run the method of an own class that an operator calls."""
 
         def run(found: Obj) -> None:
             if found.kind == "instance" and name:
@@ -380,6 +368,13 @@ class PointsTo(Solver):
 
     def _on_call(self, instr: Instr) -> None:
         self.when(instr.args[0], lambda found: self.later(lambda: self.calls.call(instr, found)))
+
+
+def _variable_of(body: Function, name: str) -> Variable:
+    """The variable of a module that ``module.name`` means."""
+    variable = body.variables.setdefault(name, Variable(name, body))
+    variable.shared = True
+    return variable
 
 
 _METHODS = {

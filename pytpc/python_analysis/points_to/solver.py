@@ -19,23 +19,22 @@ from pytpc.python_analysis.points_to.objects import (
 Node = Hashable
 """An Instr, a Variable, or a Field."""
 _MOST = 32
-"""With more objects than this, a value's containers and library objects count no more."""
+"""With more objects than this, a value's containers and library objects are ignored."""
 _MOST_OWN = 128
-"""No value has more objects than this, nor than the above once the steps are taken: what may be so
-much tells nothing apart."""
+"""No value has more objects than this, nor than the above once the steps are used up."""
 
 
 class Solver:
-    """The objects of each value, and the ways on which values are copied.
+    """The objects of each value, and the copies between values.
 
     ``succ`` and ``pred``: from an Instr, Variable or Field to those that may have its value.
-    ``writers``: the instructions that write a field. ``given_up``: values of which not all objects
-    are known, because there were too many, or too many steps. ``spread``: a value, and the call by
-    which its entries become those of another dict, or attributes.
+    ``writers``: the instructions that write a field. ``given_up``: values with unknown objects,
+    because there were too many objects or steps. ``spread``: a value, and the call that makes its
+    entries those of another dict, or attributes.
     """
 
     def __init__(self, steps: int) -> None:
-        """After ``steps`` only own objects and functions are followed, after twice as many none."""
+        """After ``steps`` follow only own objects and functions, after twice as many nothing."""
         self.given_up: set[Node] = set()
         self.succ: dict[Node, dict[Node, None]] = {}
         self.pred: dict[Node, dict[Node, None]] = {}
@@ -59,7 +58,7 @@ class Solver:
         new = [each for each in found if each not in known]
         self._left -= 1
         if new and (len(known) > _MOST or self._left < 0):
-            # Too many to tell apart: what only holds or brings others counts no more.
+            # Too many: from now on ignore objects that only hold or return others.
             self.given_up.add(node)
             kept = () if self._left < -self._left_late else ("instance", "function", "method")
             new = [each for each in new if each.kind in kept]
@@ -99,7 +98,7 @@ class Solver:
         self.copy(value, target)
 
     def slot(self, owner: Obj, name: str) -> Field:
-        """The field, known from now on."""
+        """The field, which is registered."""
         if owner.kind == "namespace" and owner.parent is not None:
             owner = owner.parent
             name = {EVERY: ATTRIBUTES, SOME: UNNAMED}.get(name) or name[1:-1].strip("'")
@@ -115,7 +114,7 @@ class Solver:
         return target
 
     def _attribute_slot(self, owner: Obj, name: str) -> None:
-        """Of an object the slots of all and of unknown attributes are kept where asked for."""
+        """Keep up the slots of all and of unknown attributes, where an object has them."""
         if name == ATTRIBUTES:
             for slot in list(owner.slots):
                 if slot != ATTRIBUTES and not slot.startswith("["):
@@ -134,7 +133,7 @@ class Solver:
             self.copy((owner, UNNAMED), to)
 
     def put_all(self, owner: Obj, value: Instr, writer: Instr) -> None:
-        """The entries of ``value``, whose names are not known, become those of ``owner``."""
+        """The entries of ``value``, with unknown names, become those of ``owner``."""
         self.spread.add((value, writer))
         self.write(owner, UNNAMED if owner.kind == "instance" else SOME, value, writer)
 

@@ -1,10 +1,10 @@
 """The Python programs and packages that a CMakeLists.txt installs.
 
-``catkin_install_python(PROGRAMS ...)``, ``install(PROGRAMS ...)``, ``ament_python_install_package``
-(and ``catkin_python_setup``, which is for setup.py), in the folders of ``add_subdirectory``, too.
-Variables are known where ``set``, ``list(APPEND)``, ``file(GLOB)`` or ``foreach`` give them from
-constants. Branches are taken both ways; but what a branch within a loop installs is not known: it
-chooses among the loop's files.
+It reads ``catkin_install_python(PROGRAMS ...)``, ``install(PROGRAMS ...)`` and
+``ament_python_install_package``, also in the folders of ``add_subdirectory``
+(``catkin_python_setup`` is for setup.py). It knows variables that ``set``, ``list(APPEND)``,
+``file(GLOB)`` or ``foreach`` set to constants. Both branches of an ``if`` count; but an ``install``
+in a branch within a loop is ignored, because it chooses among the loop's files.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ _ENDING = frozenset(
     {"DESTINATION", "PERMISSIONS", "CONFIGURATIONS", "COMPONENT", "OPTIONAL", "RENAME", "TYPE"}
 )
 _DEEPEST = 8
-# Both branches count, and what a variable has been: flags that are added to would double each time.
+# Both branches and all former values of a variable count, so that appending would double it.
 _MOST_VALUES = 2000
 
 
 @dataclass
 class Programs:
-    """``python``: files that are said to be Python; ``others``: what may be any program.
+    """``python``: files that are declared as Python; ``others``: programs of any kind.
 
     ``packages``: name of a Python package -> its folder.
     """
@@ -40,11 +40,11 @@ class Programs:
 
 
 def read_programs(root: Path, on_fault: Callable[[InputError], None]) -> Programs:
-    """What the CMakeLists.txt of the package in ``root`` installs; nothing where it has none.
+    """What the CMakeLists.txt of the package in ``root`` installs; nothing if it has none.
 
     Args:
         root: the package's folder.
-        on_fault: is told of a file that CMake cannot parse; what it says is not known then.
+        on_fault: called with a file that CMake cannot parse, which is then ignored.
     """
     found = Programs()
     known = {"PROJECT_SOURCE_DIR": [str(root)], "CMAKE_SOURCE_DIR": [str(root)]}
@@ -179,7 +179,7 @@ class _Reader:
             try:
                 paths = sorted(base.glob(within if how == "GLOB_RECURSE" else text))
             except (ValueError, NotImplementedError):
-                # CMake's patterns have forms that Python's have not.
+                # Python does not have all forms of CMake's patterns.
                 continue
             for path in paths:
                 is_below = path.is_relative_to(relative) and relative != Path("/")

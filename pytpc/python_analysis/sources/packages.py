@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pytpc.base.errors import InputError
 from pytpc.python_analysis.rules_file import Rules, load_rules
 from pytpc.python_analysis.sources.cmake_programs import Programs, read_programs
-from pytpc.python_analysis.sources.scripts import Scripts, is_python, python_files
+from pytpc.python_analysis.sources.scripts import Entry, Scripts, is_python, python_files
 from pytpc.python_analysis.sources.setup_files import Installed, read_setup
 from pytpc.python_analysis.sources.source_files import module_files
 from pytpc.workspace.packages import MANIFEST, package_folders, read_manifest
@@ -19,36 +19,7 @@ OnFault = Callable[[InputError], None]
 
 
 class NameFault(InputError):
-    """A package.xml that cannot be read: the folder's name stands for the package's."""
-
-
-@dataclass(frozen=True)
-class Entry:
-    """A program: the name of its link unit, its package and where modules are looked for.
-
-    ``folders`` are looked into first; ``packages`` has, by dotted name, the folder (or the file
-    without ``.py``) of each package of the workspace that is installed. An entry point has the name
-    of its ``module`` and the function that is called, ``begin``; a script is ``__main__``.
-    """
-
-    script: Path
-    name: str
-    package: str
-    root: Path
-    folders: tuple[Path, ...]
-    packages: Mapping[str, Path] = field(default_factory=dict, compare=False)
-    module: str = "__main__"
-    begin: str = ""
-
-    def places(self, name: str) -> Iterator[Path]:
-        """The files that an import of the dotted ``name`` may mean, the first one first."""
-        parts = name.split(".")
-        for folder in self.folders:
-            yield from module_files(folder.joinpath(*parts))
-        for count in range(len(parts), 0, -1):
-            known = self.packages.get(".".join(parts[:count]))
-            if known is not None:
-                yield from module_files(known.joinpath(*parts[count:]))
+    """A package.xml that cannot be read: the package gets the name of its folder."""
 
 
 def entries(
@@ -60,15 +31,15 @@ def entries(
     """The programs that ``path`` means: the script itself, or all nodes of a folder's packages.
 
     Nodes are entry points, programs that a CMakeLists.txt or setup.py installs, scripts with a
-    ``__main__`` guard, and scripts with a shebang that initialise a node; in a folder those alone
-    that have to do with ROS, by themselves or by modules of the workspace that they import.
+    ``__main__`` guard, and scripts with a shebang that initialise a node. In a folder only those
+    count that use ROS, themselves or through modules of the workspace that they import.
 
     Args:
         path: a script, or a folder.
-        on_fault: is told of what cannot be read: of scripts in a folder, which are left out; and,
-            by a `NameFault`, of a package.xml.
-        rules: what reads and exposes; the built-in ones where none are given.
-        beside: further folders, whose packages may be imported from.
+        on_fault: called with scripts of a folder that cannot be read, which are left out, and, by a
+            `NameFault`, with a package.xml that cannot be read.
+        rules: what reads and exposes; by default the built-in rules.
+        beside: further folders with packages that may be imported.
 
     Raises:
         InputError: there is no such file or folder.
@@ -77,7 +48,7 @@ def entries(
     path = path.absolute()
     if not path.is_file() and not path.is_dir():
         raise InputError("no such file or folder", path)
-    places = _Places(on_fault or _nobody)
+    places = _Places(on_fault)
     for folder in (path, *(each.absolute() for each in beside)):
         places.add_below(folder)
     if path.is_file():
@@ -87,15 +58,11 @@ def entries(
 
 def entry_of(script: Path, on_fault: OnFault | None = None) -> Entry:
     """A script with its package: the nearest folder above with a package.xml, else its own."""
-    return _Places(on_fault or _nobody).entry(script.absolute())
-
-
-def _nobody(_: InputError) -> None:
-    """Where nobody wants to be told."""
+    return _Places(on_fault).entry(script.absolute())
 
 
 def _named_apart(found: list[Entry]) -> list[Entry]:
-    """Programs of one package with the same name get their folder into theirs."""
+    """Programs of one package with the same name get their folder into their name."""
     known: dict[tuple[str, str], int] = {}
     for entry in found:
         known[entry.package, entry.name] = known.get((entry.package, entry.name), 0) + 1
@@ -109,7 +76,7 @@ def _named_apart(found: list[Entry]) -> list[Entry]:
 
 @dataclass(frozen=True)
 class _Package:
-    """A package: what installing it makes of its files; ``modules`` as `Entry.packages`."""
+    """A package and what its installation makes of its files; ``modules`` as `Entry.packages`."""
 
     name: str
     root: Path
@@ -119,11 +86,10 @@ class _Package:
 
 
 class _Places:
-    """The packages that are at hand."""
+    """The known packages."""
 
-    def __init__(self, on_fault: OnFault) -> None:
-        """None yet."""
-        self.on_fault = on_fault
+    def __init__(self, on_fault: OnFault | None) -> None:
+        self.on_fault = on_fault or (lambda _: None)
         self._known: dict[Path, _Package] = {}
         self._roots: dict[Path, Path | None] = {}
 
@@ -148,7 +114,7 @@ class _Places:
             try:
                 return read_manifest(root).name
             except InputError as error:
-                what = f"{error.message}; the folder's name stands for the package's"
+                what = f"{error.message}; using the folder's name as the package's"
                 self.on_fault(NameFault(what, error.path, error.line))
         return root.name
 
@@ -179,7 +145,7 @@ class _Places:
         return Entry(script, name, package.name or name, root, folders, self.modules(package))
 
     def modules(self, package: _Package) -> Mapping[str, Path]:
-        """The modules that a program of ``package`` may import; its own hide all others."""
+        """The modules that a program of ``package`` may import; its own hide the others."""
         found: dict[str, Path] = {}
         for other in (package, *self._known.values()):
             for name, place in other.modules.items():
@@ -188,7 +154,7 @@ class _Places:
 
 
 def _modules(root: Path, setup: Installed) -> Iterator[tuple[str, Path]]:
-    """Dotted name -> place of what installing a package makes importable."""
+    """Dotted name -> place of the modules that installing a package makes importable."""
     if not setup.is_any:
         return
     named = {name: root / place for name, place in setup.folders.items() if name}
@@ -213,7 +179,7 @@ class _Nodes:
         self._scripts = Scripts(rules)
 
     def below(self, folder: Path) -> Iterator[Entry]:
-        """All of them: by package and path."""
+        """All nodes, by package and path."""
         files = list(python_files(folder, self._places.on_fault))
         roots = dict.fromkeys([*package_folders(folder), *map(self._places.root_of, files)])
         declared: set[Path] = set()
@@ -242,7 +208,7 @@ class _Nodes:
         yield from filter(self._scripts.has_to_do_with_ros, programs)
 
     def _not_imported(self, installed: list[Entry], programs: list[Entry]) -> Iterator[Entry]:
-        """Those of the installed scripts that are no modules of the others."""
+        """The installed scripts that no other program imports as a module."""
         imported: set[Path] = set()
         for program in (*programs, *installed) if installed else ():
             imported.update(

@@ -1,4 +1,4 @@
-"""Which scripts are nodes: run by themselves, and with something to do with ROS."""
+"""Which scripts are nodes: they are run themselves, and use ROS."""
 
 from __future__ import annotations
 
@@ -6,14 +6,13 @@ import ast
 import os
 import re
 import stat
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Protocol
 
 from pytpc.base.errors import InputError
 from pytpc.python_analysis.rules_file import Rules
-from pytpc.python_analysis.sources.source_files import module_files, parse
+from pytpc.python_analysis.sources.source_files import folder_above, module_files, parse
 from pytpc.workspace.packages import IGNORE_MARKERS, MANIFEST, PRODUCT_MARKERS
 
 _LEFT_OUT = {"build", "devel", "install", "log", "test", "tests", "node_modules", "__pycache__"}
@@ -24,22 +23,40 @@ _INITIALISING = {"init_node", "init"}
 _LIVING = {"init_node", "init", "spin", "create_node"}
 
 
-class Program(Protocol):
-    """What is asked of a program: its file, and where its imports lead."""
+@dataclass(frozen=True)
+class Entry:
+    """A program: the name of its link unit, its package and where modules are searched.
 
-    @property
-    def script(self) -> Path:
-        """Where it begins."""
+    ``folders`` are searched first; ``packages`` has, by dotted name, the folder (or the file
+    without ``.py``) of each package that the workspace installs. An entry point has the name of its
+    ``module`` and of the function that it calls, ``begin``; a script is ``__main__``.
+    """
+
+    script: Path
+    name: str
+    package: str
+    root: Path
+    folders: tuple[Path, ...]
+    packages: Mapping[str, Path] = field(default_factory=dict, compare=False)
+    module: str = "__main__"
+    begin: str = ""
 
     def places(self, name: str) -> Iterator[Path]:
-        """The files that an import may mean."""
+        """The files that an import of the dotted ``name`` may mean, in order."""
+        parts = name.split(".")
+        for folder in self.folders:
+            yield from module_files(folder.joinpath(*parts))
+        for count in range(len(parts), 0, -1):
+            known = self.packages.get(".".join(parts[:count]))
+            if known is not None:
+                yield from module_files(known.joinpath(*parts[count:]))
 
 
 def python_files(folder: Path, on_fault: Callable[[InputError], None]) -> Iterator[Path]:
     """The Python scripts and modules below a folder, sorted, each real folder once.
 
-    Left out are hidden folders and those for tests and for what a build makes, unless they are
-    packages, and what colcon leaves out. ``on_fault`` is told of files that cannot be read.
+    Left out are hidden folders, folders for tests and of builds (unless they are packages), and
+    what colcon ignores. ``on_fault`` is called with files that cannot be read.
     """
     seen: set[str] = set()
     for here, below, files in os.walk(folder, followlinks=True):
@@ -59,7 +76,7 @@ def python_files(folder: Path, on_fault: Callable[[InputError], None]) -> Iterat
                     yield path
             except UnicodeEncodeError:
                 shown = ascii(os.fsencode(path))[2:-1]
-                on_fault(InputError(f"{shown}: a file's name that is not UTF-8"))
+                on_fault(InputError(f"{shown}: the name of this file is not UTF-8"))
 
 
 def _is_searched(folder: Path) -> bool:
@@ -69,13 +86,13 @@ def _is_searched(folder: Path) -> bool:
 
 
 def is_python(path: Path) -> bool:
-    """True for a file that ends with ``.py``, or begins with a shebang of Python."""
+    """True for a file that ends with ``.py``, or begins with a Python shebang."""
     return path.suffix == ".py" or _has_shebang(path)
 
 
 def _has_shebang(path: Path) -> bool:
     try:
-        # To open a pipe would wait for who writes into it.
+        # Opening a pipe would wait for a writer.
         if not stat.S_ISREG(path.stat().st_mode):
             return False
         with path.open("rb") as file:
@@ -86,7 +103,7 @@ def _has_shebang(path: Path) -> bool:
 
 @dataclass(frozen=True)
 class _Facts:
-    """What is asked of a source file.
+    """The facts about a source file.
 
     ``imports``: the number of dots and the dotted name of each import. ``words``: all words of its
     text. ``is_guarded``: it has a ``__main__`` guard.
@@ -102,17 +119,17 @@ _NOTHING = _Facts((), frozenset(), False, False)
 
 
 class Scripts:
-    """Tells nodes from other scripts; each file is read once."""
+    """Distinguishes nodes from other scripts; reads each file once."""
 
     def __init__(self, rules: Rules) -> None:
-        """``rules`` say which functions are ROS's."""
+        """``rules`` name the functions of ROS."""
         self._known: dict[Path, _Facts] = {}
         self._faulty: set[Path] = set()
         self._libraries = {"rospy", "rclpy", *(path.split(".")[0] for path in rules.paths)}
         self._words = _LIVING | {path.rsplit(".", 1)[-1] for path in rules.paths}
 
-    def is_run(self, program: Program) -> bool:
-        """True for a script that says by itself that it is run.
+    def is_run(self, program: Entry) -> bool:
+        """True for a script that is made to be run.
 
         Raises:
             InputError: it cannot be read or parsed.
@@ -120,11 +137,11 @@ class Scripts:
         facts = self._read(program.script)
         return facts.is_guarded or (facts.initialises and _has_shebang(program.script))
 
-    def has_to_do_with_ros(self, program: Program) -> bool:
-        """True where the program, or a module of the workspace that it imports, speaks to ROS.
+    def has_to_do_with_ros(self, program: Entry) -> bool:
+        """True where the program, or a module of the workspace that it imports, uses ROS.
 
-        That is, it imports one of ROS's libraries and has a word of what reads parameters, exposes,
-        makes what exposes, or starts a node.
+        It imports a library of ROS and has a word for reading parameters, for exposing, or for
+        starting a node.
 
         Raises:
             InputError: the script cannot be read or parsed.
@@ -137,7 +154,7 @@ class Scripts:
                 return True
         return False
 
-    def reached(self, program: Program) -> Iterator[Path]:
+    def reached(self, program: Entry) -> Iterator[Path]:
         """The script, and the files of the workspace that it imports."""
         seen = {program.script}
         waiting = [program.script]
@@ -156,7 +173,7 @@ class Scripts:
         return self._known[path]
 
     def _facts(self, path: Path) -> _Facts:
-        """The same; of a file that cannot be read there are none."""
+        """Like `_read`; an unreadable file has no facts."""
         if path in self._faulty:
             return _NOTHING
         try:
@@ -166,14 +183,12 @@ class Scripts:
             return _NOTHING
 
 
-def _meant(program: Program, user: Path, dots: int, name: str) -> Iterator[Path]:
+def _meant(program: Entry, user: Path, dots: int, name: str) -> Iterator[Path]:
     """The files that an import in the file ``user`` may mean."""
     if dots == 0:
         yield from program.places(name)
         return
-    folder = user.parent
-    for _ in range(dots - 1):
-        folder = folder.parent
+    folder = folder_above(user, dots)
     yield from module_files(folder.joinpath(*name.split(".")) if name else folder)
 
 
@@ -194,7 +209,7 @@ def _facts_of(source: str, tree: ast.Module) -> _Facts:
 
 
 def _statements(body: list[ast.stmt]) -> Iterator[ast.stmt]:
-    """All statements, those within others, too."""
+    """All statements, nested ones included."""
     waiting: list[ast.AST] = [*body]
     while waiting:
         here = waiting.pop()

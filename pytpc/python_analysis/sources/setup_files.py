@@ -1,8 +1,8 @@
-"""What setup.py, setup.cfg and pyproject.toml say of a package's modules and programs.
+"""What setup.py, setup.cfg and pyproject.toml declare about a package's modules and programs.
 
-setup.py is read, never run: the arguments of ``setup`` and ``generate_distutils_setup`` (catkin),
-as far as they are put together from constants. Where it asks for ``find_packages()``, each folder
-with an ``__init__.py`` counts.
+setup.py is read, never run: it takes the arguments of ``setup`` and ``generate_distutils_setup``
+(catkin) that are built from constants. For ``find_packages()`` each folder with an ``__init__.py``
+counts.
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ from pytpc.base.errors import InputError
 from pytpc.python_analysis.sources.source_files import parse
 
 _SETUP = {"setup", "generate_distutils_setup"}
-# What an expression that is no constant, or a wrong one, ends in.
+# Errors of expressions that are not constant, or wrong.
 _UNFIT = (AttributeError, LookupError, OverflowError, MemoryError, TypeError, ValueError)
 _Fault = Callable[[InputError], None]
 
 
 @dataclass
 class Installed:
-    """What installing a package makes of it.
+    """What the installation of a package installs.
 
     ``programs``: name of a program -> ``module:function``. ``scripts``: files, relative to the
     package. ``folders``: dotted name of a package -> its folder, relative to the package; the empty
-    name is what all others are below. ``packages``, ``modules``: the names that are installed;
-    ``packages`` is None where that is not said.
+    name is for all others. ``packages``, ``modules``: the names that are installed; ``packages`` is
+    None where nothing is declared.
     """
 
     programs: dict[str, str] = field(default_factory=dict)
@@ -43,11 +43,11 @@ class Installed:
 
 
 def read_setup(root: Path, on_fault: _Fault) -> Installed:
-    """What the files of the package in ``root`` say, together.
+    """What the files of the package in ``root`` declare together.
 
     Args:
         root: the package's folder.
-        on_fault: is told of a file that cannot be read; what it says is not known then.
+        on_fault: called with a file that cannot be read, which is then ignored.
     """
     found = Installed()
     readers = (("setup.py", _setup_py), ("setup.cfg", _setup_cfg), ("pyproject.toml", _pyproject))
@@ -62,7 +62,7 @@ def read_setup(root: Path, on_fault: _Fault) -> Installed:
 
 
 def _take(found: Installed, key: str, value: object) -> None:
-    """One argument of ``setup``, or what stands for it in another file."""
+    """One argument of ``setup``, or its counterpart in another file."""
     match key:
         case "package_dir" if isinstance(value, dict):
             found.folders.update((str(name), str(each)) for name, each in value.items())
@@ -122,7 +122,7 @@ def _name_of(node: ast.expr) -> str:
 
 
 class _Constants:
-    """The values of expressions, as far as they are constants; None for all others."""
+    """The values of constant expressions; None for others."""
 
     def __init__(self, names: dict[str, ast.expr]) -> None:
         self._names = names

@@ -1,4 +1,4 @@
-"""Source files of Python: their text, their syntax tree, and why there is none."""
+"""Python source files: their text, their syntax tree, and why there is none."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pathlib import Path
 
 from pytpc.base.errors import InputError
 
-# What is no Python 3, line by line, each with what it is called.
+# Lines that are not Python 3, each with a name.
 _PYTHON_2 = [
     (re.compile(r"^[^#'\"]*?(?:^|[\s:;])print\s+(?!=)[\w'\"(%>]"), "print without parentheses"),
     (re.compile(r"^\s*except\s+[\w.()\s,]*\w\s*,\s*\w+\s*:"), "except with a comma"),
@@ -21,21 +21,17 @@ _PYTHON_2 = [
     (re.compile(r"^[^#'\"]*<>"), "<>"),
     (re.compile(r"^[^#'\"]*`[^`]+`"), "backquotes"),
     (re.compile(r"^[^#'\"]*(?<![\w.])0[0-7]+(?![\w.])"), "an octal number"),
-    (re.compile(r"^[^#'\"]*(?<!\w)\d+[lL](?!\w)"), "a long number"),
-    (re.compile(r"^[^#'\"]*(?<!\w)[uU][rR]['\"]"), "a text of Python 2"),
-    (re.compile(r"^\s*def\s+\w+\s*\([^)]*\([\w\s,]+\)\s*[,)=]"), "a tuple among parameters"),
+    (re.compile(r"^[^#'\"]*(?<!\w)\d+[lL](?!\w)"), "a long integer"),
+    (re.compile(r"^[^#'\"]*(?<!\w)[uU][rR]['\"]"), "a string literal of Python 2"),
+    (re.compile(r"^\s*def\s+\w+\s*\([^)]*\([\w\s,]+\)\s*[,)=]"), "a tuple parameter"),
 ]
 
 
-def read_source(path: Path) -> str:
-    r"""The text of a source file, by the encoding that it declares; lines end with ``\n``.
-
-    Raises:
-        InputError: it cannot be read or decoded, or is no file.
-    """
+def _text(path: Path) -> str:
+    """The text of a source file in its declared encoding."""
     try:
         if not stat.S_ISREG(path.stat().st_mode):
-            raise InputError("no ordinary file", path)
+            raise InputError("not a regular file", path)
         with tokenize.open(path) as file:
             return file.read()
     except OSError as error:
@@ -44,33 +40,29 @@ def read_source(path: Path) -> str:
         raise InputError(f"cannot be decoded: {error}", path) from None
 
 
+def folder_above(path: Path, dots: int) -> Path:
+    """The folder that this many dots mean in an import of the file at ``path``."""
+    return path.parents[min(dots, len(path.parents)) - 1]
+
+
 def module_files(base: Path) -> Iterator[Path]:
-    """The files of the module that would be the folder, or the file without ending, ``base``."""
-    # The root of all folders has no name: dots of a relative import may lead there.
+    """The files of the module with the path ``base``: a folder, or a file without its suffix."""
+    # The root folder has no name; the dots of a relative import may lead there.
     for path in (base / "__init__.py", base.parent / f"{base.name}.py"):
         if path.is_file():
             yield path
 
 
-def lines_of(source: str) -> list[str]:
-    r"""The lines as Python counts them: form feeds and the like end none.
-
-    Args:
-        source: a text whose lines end with ``\n``.
-    """
-    return source.split("\n")
-
-
 def parse(path: Path) -> tuple[str, ast.Module]:
-    """The text and the syntax tree of a source file.
+    r"""The text of a source file, whose lines end with ``\n``, and its syntax tree.
 
     Raises:
-        InputError: it cannot be read, or is no Python 3, with the line.
+        InputError: it is not a file, cannot be read or decoded, or is not Python 3, with the line.
     """
-    source = read_source(path)
+    source = _text(path)
     try:
         with warnings.catch_warnings():
-            # What Python has to say of the user's texts (`"\d"`) is not ours to say.
+            # TPC does not pass on Python's warnings about the user's texts (`"\d"`).
             warnings.simplefilter("ignore")
             return source, ast.parse(source, str(path))
     except SyntaxError as error:
@@ -86,8 +78,8 @@ def _why(source: str, error: SyntaxError) -> str:
 
 
 def _python_2(source: str, lineno: int | None) -> str | None:
-    """What on the faulty line, or else on that before it, is Python 2."""
-    lines = lines_of(source)
+    """What is Python 2 on the faulty line, or else on the line before it."""
+    lines = source.split("\n")
     number = lineno or 0
     for line in (lines[number - 1 : number], lines[max(number - 2, 0) : number - 1]):
         for pattern, name in _PYTHON_2:

@@ -1,29 +1,29 @@
 """Makes Python nodes report: this folder on PYTHONPATH, TPC_PYTHON=1, and TPC_STATIC.
 
-A script of the static information is started again by pytpc/python_runtime/run.py, in the same
-process and with the same options of the interpreter; every other program goes on as it was. Another
-sitecustomize, which this one hides, is run as well.
+It starts a script of the static information again with pytpc/python_runtime/run.py, in the same
+process and with the same options of the interpreter; every other program runs as before. It also
+runs another sitecustomize that it hides.
 
-Every Python program that is started in such an environment runs this, roslaunch and rosparam among
-them: programs that do not concern us are recognised without importing or parsing anything.
+Every Python program in such an environment runs this, among them roslaunch and rosparam. It
+recognises programs without comparisons before it imports or parses anything.
 """
 
 import os
 import sys
 
-# Scripts of entry points, which have names of their own, are below this size.
+# Scripts of entry points, whose names are not in the static information, are smaller.
 _ENTRY_BYTES = 4096
 
 
 def _hidden() -> None:
-    """Run the sitecustomize that would have been found without this folder."""
+    """Run the sitecustomize that Python would have found without this folder."""
     from importlib.machinery import PathFinder  # noqa: PLC0415
 
     here = os.path.dirname(os.path.abspath(__file__))
     others = [path for path in sys.path if os.path.abspath(path or ".") != here]
     spec = PathFinder.find_spec("sitecustomize", others)
     if spec is not None and spec.loader is not None:
-        # As importlib.util.module_from_spec, which takes longer to import than all of this.
+        # Like importlib.util.module_from_spec, whose import takes longer than all of this.
         module = type(sys)("sitecustomize")
         module.__spec__, module.__loader__ = spec, spec.loader
         module.__file__ = spec.origin
@@ -43,7 +43,7 @@ def _script() -> str:
 
 
 def _may_be_named(script: str, paths: "list[str]") -> bool:
-    """Whether the text of the static information has the script's name, or must be parsed."""
+    """Whether the static information contains the script's name, or has to be parsed."""
     try:
         with open(script, "rb") as stream:
             head = stream.read(_ENTRY_BYTES + 1)
@@ -58,13 +58,13 @@ def _may_be_named(script: str, paths: "list[str]") -> bool:
             if any(_is_in(text, name.encode()) for name in names):
                 return True
     except OSError:
-        # What reads it in earnest says so.
+        # The code that reads the file reports the error.
         return True
     return False
 
 
 def _is_in(text: bytes, name: bytes) -> bool:
-    """Whether a JSON string is this name, or ends with it after a slash, with .py or without."""
+    """Whether a JSON string is this name, or ends with a slash and it (with or without .py)."""
     stem = name[:-3] if name.endswith(b".py") else name
     place = text.find(stem)
     while place > 0:
@@ -76,7 +76,7 @@ def _is_in(text: bytes, name: bytes) -> bool:
 
 
 def _start(script: str, paths: "list[str]") -> None:
-    """Start the script again, where its name is among the static information's."""
+    """Start the script again, if the static information names it."""
     room = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
     root = os.path.dirname(os.path.dirname(room))
     run = os.path.join(room, "run.py")

@@ -21,10 +21,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from pytpc.base.errors import RunError
+from pytpc.ingest.losses import LossCounter
+from pytpc.ingest.ros1 import decode_log, decode_string
 from pytpc.recording.marks import MarkMessages
 from pytpc.ros.mission_run import RecorderStatus, save_status
 from pytpc.ros.ros1.bag_file import BagFile
-from pytpc.ros.ros1.losses import BatchCounter, LossCounter
 from pytpc.ros.ros1.master import Master
 from pytpc.ros.ros1.subscriber import RawSubscriber, Source
 
@@ -55,8 +56,7 @@ class Recorder:
         self._until = until
         self._sim_time = sim_time
         self._clock_ns = 0
-        self._counter = LossCounter()
-        self._batches = BatchCounter(self._counter)
+        self._counter: LossCounter[str] = LossCounter()
         self._reports = 0
         self._done_ns: int | None = None
         self._early: list[tuple[Source, bytes]] = []
@@ -85,10 +85,12 @@ class Recorder:
         if self.now_ns() or len(self._early) > _MOST_EARLY:
             self.put_early()
         if source.topic == _ROSOUT:
-            text = self._counter.see(data, source.node, latched=source.latched)
-            self._reports += text.startswith(REPORT)
+            log = decode_log(data)
+            sender = source.node or log.node.decode("utf-8", "replace")
+            self._counter.see(sender, log.seq, latched=source.latched)
+            self._reports += log.msg.startswith(REPORT)
         elif source.topic == _REPORTS:
-            self._reports += self._batches.see(source.node, data)
+            self._reports += self._counter.see_text(source.node, decode_string(data))
         elif source.topic == self._until and any(data) and self._done_ns is None:
             self._done_ns = self.now_ns()
 

@@ -14,8 +14,8 @@ from collections.abc import Callable, Sequence
 
 from pytpc.base.errors import MissingToolError, RunError
 from pytpc.base.wording import many
+from pytpc.ingest.losses import LossCounter
 from pytpc.ingest.ros1 import decode_log
-from pytpc.ros.ros1.losses import LossCounter
 from pytpc.ros.ros1.master import Master, own_host, uri_of
 from pytpc.ros.ros1.subscriber import RawSubscriber
 
@@ -57,7 +57,7 @@ class Relay:
     def __init__(self, publish: Callable[[str], object]) -> None:
         """See the class."""
         self._publish = publish
-        self._counter = LossCounter()
+        self._counter: LossCounter[str] = LossCounter()
         self.passed_on = 0
         self.malformed = 0
 
@@ -69,11 +69,11 @@ class Relay:
     def take(self, data: bytes, sender: str = "") -> None:
         """Take one serialized rosgraph_msgs/Log; ``sender`` is who published it."""
         try:
-            self._counter.see(data, sender)
             log = decode_log(data)
         except ValueError:
             self.malformed += 1
             return
+        self._counter.see(sender or log.node.decode("utf-8", "replace"), log.seq)
         line = line_of(log.msg.decode("utf-8", "replace"), log.stamp_ns)
         if line is not None:
             self._publish(line)

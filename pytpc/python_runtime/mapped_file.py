@@ -1,4 +1,4 @@
-"""The room in a file of reports: space on the disk, mapped, handed out in chunks."""
+"""The mapped file of reports: disk space that is handed out in chunks."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ import contextlib
 import mmap
 import os
 import struct
+import sys
 import threading
 from time import monotonic_ns, time_ns
 from typing import TYPE_CHECKING
 
+from pytpc.python_runtime.errors import warn
 from pytpc.python_runtime.log_layout import (
     CHUNK,
     CHUNK_BYTES,
@@ -22,20 +24,17 @@ from pytpc.python_runtime.log_layout import (
     NODE_BYTES,
     OPEN,
     RECORD_BYTES,
+    SECOND,
     STATE_AT,
     STOPPED,
-    bounded,
-    created,
-    program,
 )
-from pytpc.python_runtime.words import warn
 
 if TYPE_CHECKING:
     from pytpc.python_runtime.config import Config
 
 _EXTENT_BYTES = 1 << 20
-# Mappings are never given back, because other threads may write to them, and each takes a
-# descriptor: they grow, so that 4 GiB are some 70 of them.
+# Mappings are never unmapped, because other threads may write to them, and each takes a
+# descriptor. They grow in size, so that 4 GiB need about 70 of them.
 _LARGEST_EXTENT = 64 << 20
 
 
@@ -45,17 +44,20 @@ class Extent:
     __slots__ = ("base", "bytes", "chunks", "words")
 
     def __init__(self, mapped: mmap.mmap, size: int) -> None:
-        """``mapped`` is of ``size`` bytes."""
+        """``mapped`` has ``size`` bytes."""
         self.bytes = mapped
         self.words = memoryview(mapped).cast("I")
         self.chunks = size // CHUNK_BYTES
 
 
-class Room:
-    """One file. Errors while it is written stop the recording, and never the program."""
+class MappedFile:
+    """One file. An error while it is written stops the recording, never the program.
+
+    ``is_stopped``: the disk is full, or a limit is reached.
+    """
 
     def __init__(self, config: Config, parent: int, node: str) -> None:
-        """Make the file in its folder; nothing but its header is in it.
+        """Make the file in its folder, with its header alone.
 
         Raises:
             OSError: it cannot be made.
@@ -66,9 +68,9 @@ class Room:
         self._extents: list[Extent] = []
         self._size = HEADER_BYTES
         self._used = 0
-        self._is_stopped = False
+        self.is_stopped = False
         self._is_closed = False
-        self.path, self._descriptor = created(config, node)
+        self.path, self._descriptor = _created(config, node)
         its = os.fstat(self._descriptor)
         self._identity = (its.st_dev, its.st_ino)
         try:
@@ -81,9 +83,9 @@ class Room:
             raise
 
     def new_chunk(self, kind: int, thread: int, first: int) -> tuple[Extent, int] | None:
-        """A chunk, and its first byte in its extent; None where there is no room."""
+        """A chunk as its extent and its first byte in it; None where there is no space."""
         with self._lock:
-            if self._is_stopped or self._is_closed:
+            if self.is_stopped or self._is_closed:
                 return None
             before = sum(extent.chunks for extent in self._extents)
             if self._used == before:
@@ -122,7 +124,7 @@ class Room:
         self._size = end
 
     def _is_mine(self) -> bool:
-        """A program that closes all descriptors may have opened a file of its own in its place."""
+        """A program that closes all descriptors may have reused the number for another file."""
         try:
             its = os.fstat(self._descriptor)
         except OSError:
@@ -130,18 +132,13 @@ class Room:
         return (its.st_dev, its.st_ino) == self._identity
 
     def _stop(self, why: str) -> None:
-        if not self._is_stopped:
-            self._is_stopped = True
+        if not self.is_stopped:
+            self.is_stopped = True
             self._put_state(STOPPED)
-            warn(f"{self.path}: {why}; nothing more is recorded, the program goes on as if it were")
-
-    @property
-    def is_stopped(self) -> bool:
-        """Whether the disk is full, or a limit reached."""
-        return self._is_stopped
+            warn(f"{self.path}: {why}; recording stops, and the program continues")
 
     def close(self) -> None:
-        """Give back what was not used. Threads may write on in the chunks that they have."""
+        """Give back unused space. Threads can still write to the chunks that they have."""
         with self._lock:
             if self._is_closed:
                 return
@@ -150,7 +147,7 @@ class Room:
                 with contextlib.suppress(OSError):
                     os.ftruncate(self._descriptor, HEADER_BYTES + self._used * CHUNK_BYTES)
                 os.close(self._descriptor)
-            if not self._is_stopped:
+            if not self.is_stopped:
                 self._put_state(CLOSED)
 
     def _put_state(self, state: int) -> None:
@@ -181,7 +178,44 @@ class Room:
             0,
             bounded(node, NODE_BYTES),
             bounded(os.uname().nodename, 256),
-            bounded(program(), 1024),
+            bounded(_program(), 1024),
         )
         self._header[:8] = MAGIC
         self._grow()
+
+
+def bounded(text: str, size: int) -> bytes:
+    """UTF-8, cut between characters, with space for a NUL at the end."""
+    return text.encode("utf-8", "replace")[: size - 1].decode("utf-8", "ignore").encode("utf-8")
+
+
+def _program() -> str:
+    """The script that runs, or the interpreter."""
+    script = getattr(sys.modules.get("__main__"), "__file__", None)
+    return os.path.abspath(script) if isinstance(script, str) else sys.executable or "python"
+
+
+def _created(config: Config, node: str) -> tuple[str, int]:
+    """The path of a new file, and a descriptor of that path with ``.new`` added.
+
+    The file gets its name when it can be read. Until then ``.new`` keeps processes of other
+    containers, which may have the same number and so the same names, from using it.
+    """
+    home = os.environ.get("ROS_HOME") or os.path.join(os.environ.get("HOME") or "/tmp", ".ros")
+    folder = config.folder or os.path.join(home, "tpc")
+    os.makedirs(folder, exist_ok=True)
+    name = (node or os.path.basename(_program())).lstrip("/")
+    name = "".join(c if c.isascii() and (c.isalnum() or c in "_-") else "_" for c in name)[:100]
+    stem = os.path.join(folder, f"{name or 'process'}-{os.getpid()}-{time_ns() // SECOND}")
+    for number in range(1, 1000):
+        path = f"{stem}-{number}.tpc" if number > 1 else f"{stem}.tpc"
+        flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC
+        try:
+            descriptor = os.open(f"{path}.new", flags, 0o666)
+        except FileExistsError:
+            continue
+        if not os.path.exists(path):
+            return path, descriptor
+        os.close(descriptor)
+        os.unlink(f"{path}.new")
+    raise FileExistsError(17, "File exists", stem)
