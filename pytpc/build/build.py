@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pytpc.base.atomic import write_atomic
+from pytpc.base.checked_json import check_rules
 from pytpc.base.errors import RunError, WorkspaceError
 from pytpc.base.paths import (
     SYSTEM_PATH,
@@ -32,7 +33,6 @@ from pytpc.build.python_nodes import PythonBuild, python_of_build
 from pytpc.build.python_units import names_of
 from pytpc.build.reconcile import left_out_units, stale_files
 from pytpc.python_analysis.rules_file import Rules, load_rules
-from pytpc.base.checked_json import check_rules
 from pytpc.static.link_unit import LeftOut, LinkUnit
 from pytpc.static.static_info import StaticInfo, is_python_file, load_link_unit, unit_files
 from pytpc.workspace.cmake_targets import ask_for_targets
