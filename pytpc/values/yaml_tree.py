@@ -12,12 +12,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from ruamel.yaml import YAML
-from ruamel.yaml.error import MarkedYAMLError, YAMLError
+import yaml
 
 from pytpc.values.scalars import plain_value
 
-# ruamel's classes of events, which differ in their fields.
+# PyYAML's classes of events, which differ in their fields.
 _Event = Any
 _MERGE = "<<"
 _MERGE_TAG = "tag:yaml.org,2002:merge"
@@ -81,12 +80,12 @@ def read_yaml(text: str) -> list[YamlNode]:
         ValueError: the text is not YAML; the message has the line.
     """
     try:
-        return list(_documents(YAML(typ="rt", pure=True).parse(text), text))
-    except MarkedYAMLError as error:
+        return list(_documents(yaml.parse(text, yaml.SafeLoader), text))
+    except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         where = f" in line {mark.line + 1}" if mark is not None else ""
         raise ValueError(f"not YAML{where}: {error.problem or error.context}") from error
-    except (YAMLError, RecursionError, ValueError) as error:
+    except (yaml.YAMLError, RecursionError, ValueError) as error:
         raise ValueError(f"not YAML: {' '.join(str(error).split())}") from error
 
 

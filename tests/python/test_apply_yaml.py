@@ -105,6 +105,7 @@ REFUSED = [
     ("m: &m {z: 1}\nn: *m\n", "n/z", "3", "it is the value of m/z, too"),
     ("a: $(arg x)\n", "a", "2", "roslaunch puts something in here"),
     ("a: !!binary aGk=\n", "a", "2", "the tag tag:yaml.org,2002:binary is not supported"),
+    ("a: !!bool maybe\n", "a", "true", "'maybe' is no bool"),
     ("a: [1, 2]\n", "a", "[1]", "the list has 2 values, and 1 are given"),
     ("a: [1, 2]\n", "a", "3", "give all of it"),
     ("a: [1, [2]]\n", "a", "[1, 2]", "lists in lists"),
