@@ -4,28 +4,17 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import NamedTuple
 
 from pytpc.values.launch_value import launch_text, launch_value
 from pytpc.values.launch_xml import Attribute, Tag, encoding_of, inner_text, read_tags, written
 from pytpc.values.new_value import Refused, read_value
 from pytpc.values.scalars import type_of
-from pytpc.values.yaml_edit import all_settings, edit_yaml
+from pytpc.values.yaml_edit import Edit, all_settings, edit_yaml
 
 _LISTED = 5
 _GIVE = "the file was changed since, or has several; give the launch file instead of the mission"
-
-
-@dataclass(frozen=True, slots=True)
-class LaunchEdit:
-    """A change of one value in a launch file; see ``yaml_edit.Edit``."""
-
-    data: bytes
-    old: object
-    new: object
-    lineno: int
-    notes: tuple[str, ...] = ()
 
 
 def tags_of(data: bytes) -> list[Tag]:
@@ -51,9 +40,7 @@ class NewText(NamedTuple):
     force: bool = False
 
 
-def edit_param(
-    data: bytes, name: str, lineno: int, given: str, *, force: bool = False
-) -> LaunchEdit:
+def edit_param(data: bytes, name: str, lineno: int, given: str, *, force: bool = False) -> Edit:
     """Put a value into a ``<param value=...>``.
 
     Args:
@@ -85,7 +72,7 @@ def edit_argument(
     lineno: int,
     given: NewText,
     via: Sequence[int] = (),
-) -> LaunchEdit:
+) -> Edit:
     """Put a value into the ``<arg>`` whose value a parameter has.
 
     Args:
@@ -115,12 +102,12 @@ def edit_argument(
             raise Refused(f"<arg> {name} is used in line {lines}, too; --force changes all")
         notes = [f"line {lines} uses <arg> {name}, too, and changes with it"]
     edit = _edit_attribute(data, tag, value, given)
-    return LaunchEdit(edit.data, edit.old, edit.new, edit.lineno, (*edit.notes, *notes))
+    return replace(edit, notes=(*edit.notes, *notes))
 
 
 def edit_inline(
     data: bytes, keys: tuple[str, ...], lineno: int, given: str, *, force: bool = False
-) -> LaunchEdit:
+) -> Edit:
     """Put a value into the YAML inside a ``<rosparam>``.
 
     ``lineno`` is that of the value, or 0: the only one that sets it is meant.
@@ -145,10 +132,10 @@ def edit_inline(
         first = data[:start].count(b"\n")
         edit = edit_yaml(data[start:end].decode(encoding), keys, given, force=force)
         in_section = data[:start].endswith(b"<![CDATA[")
-        if "]]>" in edit.text if in_section else "<" in edit.text or "&" in edit.text:
+        if b"]]>" in edit.data if in_section else b"<" in edit.data or b"&" in edit.data:
             raise Refused("the value has characters that are special in XML", lineno)
-        result = data[:start] + _encoded(edit.text, encoding) + data[end:]
-        return LaunchEdit(result, edit.old, edit.new, first + edit.lineno, edit.notes)
+        result = data[:start] + _encoded(edit.data.decode(), encoding) + data[end:]
+        return replace(edit, data=result, lineno=first + edit.lineno)
     raise Refused(f"the <rosparam> with it is gone; {_GIVE}", lineno or None)
 
 
@@ -159,7 +146,7 @@ def _sets(text: str, keys: tuple[str, ...]) -> bool:
         return False
 
 
-def add_param(data: bytes, offset: int | None, name: str, value: object, given: str) -> LaunchEdit:
+def add_param(data: bytes, offset: int | None, name: str, value: object, given: str) -> Edit:
     """Add a ``<param>`` to the tag of a node, or before the end of the launch file.
 
     Args:
@@ -196,10 +183,10 @@ def add_param(data: bytes, offset: int | None, name: str, value: object, given: 
     added = _encoded(f"{newline}{step}{line}{more}", encoding_of(data))
     result = head + added + tail
     tags_of(result)
-    return LaunchEdit(result, None, value, _line_at(result, len(head)) + 1)
+    return Edit(result, None, value, _line_at(result, len(head)) + 1)
 
 
-def _edit_attribute(data: bytes, tag: Tag, attribute: Attribute, given: NewText) -> LaunchEdit:
+def _edit_attribute(data: bytes, tag: Tag, attribute: Attribute, given: NewText) -> Edit:
     text, kind, force = given
     old_text = attribute.value
     notes = []
@@ -221,7 +208,7 @@ def _edit_attribute(data: bytes, tag: Tag, attribute: Attribute, given: NewText)
     piece = _encoded(written(put, attribute.quote), encoding_of(data))
     result = data[: attribute.start] + piece + data[attribute.end :]
     _check(data, result, (tag.offset, attribute.name), put)
-    return LaunchEdit(result, old, new, _line_at(data, attribute.start), tuple(notes))
+    return Edit(result, old, new, _line_at(data, attribute.start), tuple(notes))
 
 
 def _check(data: bytes, result: bytes, place: tuple[int, str], text: str) -> None:

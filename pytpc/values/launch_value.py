@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import math
-
 from pytpc.values.new_value import Refused, bool_text, yaml_text
-from pytpc.values.scalars import number_text, plain_value
+from pytpc.values.scalars import number_text, plain_value, same_value
 
 _BOOLS = {"true": True, "1": True, "false": False, "0": False}
 
@@ -76,14 +74,8 @@ def launch_text(value: object, given: str, kind: str, old: str) -> str:
             read = launch_value(text, kind)
         except ValueError:
             continue
-        if _same(read, value):
+        if same_value(read, value):
             return text
     if kind == "auto":
         raise Refused(f"roslaunch would read {given!r} as another type; give the tag a type")
     raise Refused(f'{given!r} does not fit type="{kind}"')
-
-
-def _same(one: object, other: object) -> bool:
-    if isinstance(one, float) and isinstance(other, float) and math.isnan(one):
-        return math.isnan(other)
-    return type(one) is type(other) and one == other

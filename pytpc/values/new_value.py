@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 
-from pytpc.values.scalars import ValueType, number_text, plain_value, type_of
+from pytpc.values.scalars import ValueType, number_text, plain_value, same_value, type_of
 
 _WORDS = (("true", "false"), ("on", "off"), ("yes", "no"))
 _TRUE, _FALSE = ("true", "on", "yes", "1"), ("false", "off", "no", "0")
@@ -103,8 +103,7 @@ def yaml_text(value: object, given: str, old: str = "", style: str = "") -> str:
         return _quoted(value, style)
     if not isinstance(value, int | float):
         raise Refused(f"{type_of(value)} values cannot be written here")
-    read = plain_value(given.strip())
-    if type(read) is type(value) and (read == value or (read != read and value != value)):  # noqa: PLR0124
+    if same_value(plain_value(given.strip()), value):
         return given.strip()
     return number_text(value) if isinstance(value, float) else str(value)
 
@@ -137,13 +136,9 @@ def _escape(character: str) -> str:
     if character.isprintable():
         return character
     code = ord(character)
-    return (
-        f"\\x{code:02x}"
-        if code < 0x100
-        else f"\\u{code:04x}"
-        if code < 0x10000
-        else f"\\U{code:08x}"
-    )
+    if code < 0x100:
+        return f"\\x{code:02x}"
+    return f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
 
 
 def degrees_text(value: float) -> str | None:

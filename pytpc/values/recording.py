@@ -9,6 +9,7 @@ from pathlib import Path
 from pytpc.base.errors import InputError, TpcError
 from pytpc.values.origin_places import Places
 from pytpc.values.origins import ORIGINS_FILE, START_FILE, Origin, write_origins
+from pytpc.values.scalars import same_value
 from pytpc.values.trace import Trace, name_on_server, trace_launch
 from pytpc.values.yaml_tree import YamlNode, read_yaml, settings, value_of
 
@@ -94,19 +95,10 @@ def _origin(
         # A node has taken it away.
         note = f"{launched.words()} set it, and it was deleted at runtime"
         return Origin(name, "runtime", None, None, None, "", note=note)
-    if launched.value is None or _same(launched.value, value):
+    if launched.value is None or same_value(launched.value, value):
         return replace(launched, value=value)
     note = f"{launched.words()} set it to {launched.value!r}"
     return Origin(name, "runtime", value, None, None, "", launched.via, note)
-
-
-def _same(one: object, other: object) -> bool:
-    """Equal, of one type; NaN is NaN."""
-    if isinstance(one, float) and isinstance(other, float):
-        return one == other or (one != one and other != other)  # noqa: PLR0124
-    if isinstance(one, list) and isinstance(other, list):
-        return len(one) == len(other) and all(map(_same, one, other))
-    return type(one) is type(other) and one == other
 
 
 def try_trace(
@@ -158,20 +150,6 @@ def save_origins(
         "env": {name: env[name] for name in _ENV_NAMES if name in env},
         "reason": reason,
         "files": {} if trace is None else dict(sorted(trace.files.items())),
-        "nodes": [] if trace is None else _nodes(trace),
+        "nodes": [] if trace is None else [node.to_json() for node in trace.nodes],
     }
     write_origins(document, origins, folder / ORIGINS_FILE)
-
-
-def _nodes(trace: Trace) -> list[dict[str, object]]:
-    return [
-        {
-            "name": node.name,
-            "package": node.package,
-            "program": node.program,
-            "path": str(node.path),
-            "lineno": node.lineno,
-            "offset": node.offset,
-        }
-        for node in trace.nodes
-    ]

@@ -38,6 +38,15 @@ def type_of(value: object) -> ValueType:
     return "map" if isinstance(value, dict) else "binary"
 
 
+def same_value(one: object, other: object) -> bool:
+    """Whether two values are equal and of one type; NaN is NaN."""
+    if isinstance(one, float) and isinstance(other, float) and math.isnan(one):
+        return math.isnan(other)
+    if isinstance(one, list) and isinstance(other, list):
+        return len(one) == len(other) and all(map(same_value, one, other))
+    return type(one) is type(other) and one == other
+
+
 def plain_value(text: str, tag: str | None = None, *, quoted: bool = False) -> object:
     """The value of a scalar of YAML as rosparam reads it.
 

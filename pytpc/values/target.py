@@ -11,14 +11,7 @@ from pytpc.static.parameters import same_parameter
 from pytpc.values.apply import FileChange, decoded, read_file
 from pytpc.values.installed import is_installed, of_the_system, source_of
 from pytpc.values.journal import digest
-from pytpc.values.launch_edit import (
-    LaunchEdit,
-    NewText,
-    add_param,
-    edit_argument,
-    edit_inline,
-    edit_param,
-)
+from pytpc.values.launch_edit import NewText, add_param, edit_argument, edit_inline, edit_param
 from pytpc.values.launch_xml import read_tags
 from pytpc.values.new_value import Refused, guessed, read_value
 from pytpc.values.origin_places import IN_ARGS
@@ -26,7 +19,7 @@ from pytpc.values.origins import ORIGINS_FILE, Origin, origins_file, read_docume
 from pytpc.values.recording import leaves, origins_of
 from pytpc.values.scalars import type_of
 from pytpc.values.trace import LaunchNode, trace_launch
-from pytpc.values.yaml_edit import all_settings, edit_yaml
+from pytpc.values.yaml_edit import Edit, all_settings, edit_yaml
 
 _YAML = (".yaml", ".yml")
 _LISTED = 8
@@ -86,17 +79,7 @@ def _of_mission(path: Path) -> Target:
     file = origins_file(path)
     document = read_document(file)
     try:
-        nodes = [
-            LaunchNode(
-                str(node["name"]),
-                str(node["package"]),
-                str(node["program"]),
-                Path(node["path"]),
-                int(node["lineno"]),
-                int(node["offset"]),
-            )
-            for node in document.get("nodes", [])
-        ]
+        nodes = [LaunchNode.of(node) for node in document.get("nodes", [])]
         files = {str(name): str(value) for name, value in document.get("files", {}).items()}
     except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise InputError(f"not a file of origins: {error!r}", file) from error
@@ -163,8 +146,7 @@ def plan_yaml(path: Path, parameter: str, given: str, *, force: bool = False) ->
         raise InputError(str(error), path, error.lineno) from error
     notes = (*edit.notes, *_where(path, real))
     name = "/" + "/".join(meant[0])
-    after = edit.text.encode("utf-8")
-    return FileChange(name, real, data, after, edit.old, edit.new, edit.lineno, notes)
+    return FileChange(name, real, data, edit.data, edit.old, edit.new, edit.lineno, notes)
 
 
 def plan_origin(
@@ -201,27 +183,18 @@ def plan_origin(
     try:
         if origin.kind == "yaml":
             edit = edit_yaml(decoded(data, file), origin.keys, given, force=force)
-            after, found = (
-                edit.text.encode("utf-8"),
-                LaunchEdit(b"", edit.old, edit.new, edit.lineno, edit.notes),
-            )
         else:
             as_then = (files or {}).get(str(path), digest(data)) == digest(data)
-            found = _edit_launch(data, origin, given, force, as_then=as_then)
-            after = found.data
+            edit = _edit_launch(data, origin, given, force, as_then=as_then)
     except Refused as error:
         raise InputError(str(error), file, error.lineno) from error
-    notes = [*found.notes, *_where(path, real)]
-    if origin.value is not None and repr(origin.value) != repr(found.old):
-        notes.append(f"the robot had {origin.value!r}; the file was changed since")
-    return FileChange(
-        origin.name, real, data, after, found.old, found.new, found.lineno, tuple(notes)
-    )
+    notes = (*edit.notes, *_where(path, real))
+    if origin.value is not None and repr(origin.value) != repr(edit.old):
+        notes += (f"the robot had {origin.value!r}; the file was changed since",)
+    return FileChange(origin.name, real, data, edit.data, edit.old, edit.new, edit.lineno, notes)
 
 
-def _edit_launch(
-    data: bytes, origin: Origin, given: str, force: bool, *, as_then: bool
-) -> LaunchEdit:
+def _edit_launch(data: bytes, origin: Origin, given: str, force: bool, *, as_then: bool) -> Edit:
     lineno = (origin.lineno or 0) if as_then else 0
     if origin.argument:
         via = [

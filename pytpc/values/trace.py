@@ -11,7 +11,7 @@ import re
 import shutil
 import subprocess
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -35,6 +35,15 @@ class LaunchNode:
     path: Path
     lineno: int
     offset: int
+
+    @classmethod
+    def of(cls, fields: Mapping[str, Any]) -> LaunchNode:
+        """The node with these fields, as in JSON."""
+        return cls(**{**fields, "path": Path(fields["path"])})
+
+    def to_json(self) -> dict[str, object]:
+        """The fields; ``of`` reads them."""
+        return {**asdict(self), "path": str(self.path)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,22 +138,9 @@ def trace_launch(
         # Of includes without an end roslaunch names each.
         why = why if len(why) <= _LONGEST else f"{why[: _LONGEST // 2]} ... {why[-_LONGEST // 2 :]}"
         raise InputError(f"roslaunch cannot read it: {why}", launch)
-    return _trace(launch.absolute(), args, json.loads(ran.stdout))
-
-
-def _trace(launch: Path, args: Mapping[str, str], answer: Mapping[str, Any]) -> Trace:
-    nodes = [
-        LaunchNode(
-            node["name"],
-            node["pkg"],
-            node["type"],
-            Path(node["file"]),
-            node["lineno"],
-            node["offset"],
-        )
-        for node in answer["nodes"]
-    ]
-    return Trace(launch, dict(args), answer["parameters"], nodes, answer["files"])
+    answer = json.loads(ran.stdout)
+    nodes = [LaunchNode.of(node) for node in answer["nodes"]]
+    return Trace(launch.absolute(), dict(args), answer["parameters"], nodes, answer["files"])
 
 
 def name_on_server(name: str, on_server: Collection[str]) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from pytpc.values.new_value import Refused, degrees_text, guessed, read_value, yaml_text
-from pytpc.values.scalars import number_text, type_of
+from pytpc.values.scalars import number_text, same_value, type_of
 from pytpc.values.yaml_tree import YamlNode, YamlSetting, read_yaml, settings, value_of
 
 Keys = tuple[str, ...]
@@ -18,10 +18,9 @@ _LISTED = 5
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """A change of one value in a text: what it was and is, in which line, what else to know."""
+    """A change of one value: the file after it, what it was and is, its line, what else to know."""
 
-    text: str
-    keys: Keys
+    data: bytes
     old: object
     new: object
     lineno: int
@@ -82,7 +81,7 @@ def edit_yaml(text: str, keys: Keys, given: str, *, force: bool = False) -> Edit
         text = _put(text, one, piece)
     changed = _changed_with(having[0], spot)
     _check(documents, text, {(documents.index(having[0]), keys): new for keys in changed})
-    return Edit(text, keys, old, new, spot.lineno, tuple(notes))
+    return Edit(text.encode(), old, new, spot.lineno, tuple(notes))
 
 
 def _changed_with(document: Mapping[Keys, YamlSetting], spot: YamlNode) -> list[Keys]:
@@ -163,7 +162,7 @@ def _list_pieces(
         old = _read(item)
         value = read_value(one.text, type_of(old), force=force)
         new.append(value)
-        if value != old or type(value) is not type(old):
+        if not same_value(value, old):
             piece, _ = _piece(item, value, one.text)
             pieces.append((item, piece))
     return pieces, new

@@ -137,13 +137,14 @@ def test_any_yaml(document: Written, number: float, word: str, flag: bool) -> No
     elif isinstance(old, float):
         new, given_text = number, repr(number)
     edit = edit_yaml(document.text, document.keys, given_text)
+    after = edit.data.decode()
     # All but the scalar's own characters are as they were...
     tail = document.text[document.end :]
-    assert edit.text.startswith(document.text[: document.start])
-    assert edit.text.endswith(tail)
-    assert len(edit.text) >= document.start + len(tail)
+    assert after.startswith(document.text[: document.start])
+    assert after.endswith(tail)
+    assert len(after) >= document.start + len(tail)
     # ... and PyYAML, which rosparam uses, reads the new value and no other that differs.
-    assert repr(yaml.safe_load(edit.text)) == repr(changed(before, document.keys, new))
+    assert repr(yaml.safe_load(after)) == repr(changed(before, document.keys, new))
 
 
 @st.composite

@@ -69,7 +69,7 @@ def keys_of(text: str, name: str) -> tuple[str, ...]:
 
 @pytest.mark.parametrize(("before", "name", "given", "after"), CHANGES)
 def test_changed(before: str, name: str, given: str, after: str) -> None:
-    assert edit_yaml(before, keys_of(before, name), given).text == after
+    assert edit_yaml(before, keys_of(before, name), given).data.decode() == after
 
 
 def test_what_is_said_of_a_change() -> None:
@@ -85,7 +85,7 @@ def test_what_is_said_of_a_change() -> None:
 def test_an_angle_that_no_degrees_give() -> None:
     odd = next(x for x in (0.1 + n / 1000 for n in range(1000)) if degrees_text(x) is None)
     edit = edit_yaml("a: deg(90)\n", ("a",), repr(odd))
-    assert edit.text == f"a: {odd!r}\n"
+    assert edit.data.decode() == f"a: {odd!r}\n"
     assert edit.notes == ("no number of degrees is this angle; it is in rad now",)
     with pytest.raises(Refused, match="no number of degrees is"):
         edit_yaml("a: !degrees 90\n", ("a",), repr(odd))
@@ -142,7 +142,7 @@ FORCED = [
 
 @pytest.mark.parametrize(("before", "name", "given", "after"), FORCED)
 def test_forced(before: str, name: str, given: str, after: str) -> None:
-    assert edit_yaml(before, keys_of(before, name), given, force=True).text == after
+    assert edit_yaml(before, keys_of(before, name), given, force=True).data.decode() == after
 
 
 # --- scalars, as PyYAML reads them (which rosparam uses)
