@@ -159,16 +159,26 @@ def read_cmakelists(package: Package) -> bytes | None:
         InputError: CMake cannot parse the file, with the line; or it cannot be read.
     """
     path = package.cmakelists
+    data = read_list_file(path)
+    if data is not None:
+        check_syntax(data, path)
+    elif path.is_symlink():
+        raise InputError("a symbolic link that leads nowhere", path)
+    return data
+
+
+def read_list_file(path: Path) -> bytes | None:
+    """The bytes of a CMakeLists.txt, unchecked; None if it does not exist.
+
+    Raises:
+        InputError: it cannot be read.
+    """
     try:
-        data = path.read_bytes()
+        return path.read_bytes()
     except FileNotFoundError:
-        if path.is_symlink():
-            raise InputError("a symbolic link that leads nowhere", path) from None
         return None
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}", path) from error
-    check_syntax(data, path)
-    return data
 
 
 def check_syntax(data: bytes, path: Path) -> None:

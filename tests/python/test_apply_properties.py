@@ -13,7 +13,8 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pytpc.values.apply import FileChange, apply_change, replace_file, undo_change
+from pytpc.base.atomic import replace_file
+from pytpc.values.apply import FileChange, apply_change, undo_change
 from pytpc.values.journal import Journal
 from pytpc.values.launch_edit import edit_param
 from pytpc.values.launch_value import launch_value

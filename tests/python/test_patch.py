@@ -13,7 +13,14 @@ from packages import add_package, contents, install_prefix, make_workspace
 
 from pytpc.base.errors import InputError, MissingToolError, WorkspaceError
 from pytpc.workspace import patch
-from pytpc.workspace.patch import Change, apply_changes, diff, patch_text, plan, restore_text
+from pytpc.workspace.patch import (
+    ListFileChange,
+    apply_changes,
+    diff,
+    patch_text,
+    plan,
+    restore_text,
+)
 
 ROOT = Path(__file__).resolve().parents[2]
 BOM = b"\xef\xbb\xbf"
@@ -309,7 +316,7 @@ def test_patching_needs_the_installed_file_and_restoring_does_not(
 def test_the_diff_is_one_that_patch_applies(workspace: Path, prefix: Path, text: bytes) -> None:
     path = workspace / "src/arm/CMakeLists.txt"
     path.write_bytes(text)
-    change = Change(path, path, text, patch_text(text, FILE))
+    change = ListFileChange(path, path, text, patch_text(text, FILE))
     shown = diff(change, workspace)
     assert shown.startswith(b"--- a/src/arm/CMakeLists.txt\n+++ b/src/arm/CMakeLists.txt\n@@ ")
     command = ["patch", "--binary", "-p1"]

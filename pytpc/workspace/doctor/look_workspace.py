@@ -11,7 +11,13 @@ from pathlib import Path
 from pytpc.base.errors import InputError, WorkspaceError
 from pytpc.base.paths import OWN_FOLDER, ROS_PREFIXES, prefix
 from pytpc.workspace.doctor.workspace import BuildFolder, Known, SeenPackage, SeenWorkspace
-from pytpc.workspace.packages import MANIFEST, Manifest, package_folders, read_manifest
+from pytpc.workspace.packages import (
+    MANIFEST,
+    Manifest,
+    package_folders,
+    read_list_file,
+    read_manifest,
+)
 
 _CACHE = "CMakeCache.txt"
 _CACHE_LINE = re.compile(r"^(\w+):\w+=(.*)$", re.MULTILINE)
@@ -79,13 +85,11 @@ def _look_at_package(folder: Path) -> SeenPackage:
     except InputError as fault:
         manifest = fault
     try:
-        lists = path.read_bytes()
-    except FileNotFoundError:
-        lists = (
-            InputError("a symbolic link that leads nowhere", path) if path.is_symlink() else None
-        )
-    except OSError as fault:
-        lists = InputError(f"cannot be read: {fault.strerror}", path)
+        lists = read_list_file(path)
+        if lists is None and path.is_symlink():
+            lists = InputError("a symbolic link that leads nowhere", path)
+    except InputError as fault:
+        lists = fault
     return SeenPackage(folder, manifest, lists, os.access(folder, os.W_OK | os.X_OK))
 
 
