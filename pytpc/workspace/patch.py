@@ -26,7 +26,7 @@ from pytpc.base.diff import unified_diff
 from pytpc.base.errors import InputError, TpcError, WorkspaceError
 from pytpc.base.paths import cmake_file
 from pytpc.workspace.cmake_block import MARKER, patch_text, restore_text
-from pytpc.workspace.cmake_syntax import command_names
+from pytpc.workspace.cmake_syntax import commands
 from pytpc.workspace.packages import (
     IGNORE_MARKERS,
     MANIFEST,
@@ -139,7 +139,7 @@ def plan_tree(
 
 def calls_project(data: bytes) -> bool:
     """Whether a list file calls project() itself; CMake wants that of a top-level one."""
-    return any(name == "project" for name, _ in command_names(data))
+    return any(command.name == "project" for command in commands(data))
 
 
 def apply_changes(changes: Sequence[ListFileChange]) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from pytpc.base.errors import InputError, WorkspaceError
 from pytpc.workspace.cmake_block import patch_text, restore_text
-from pytpc.workspace.cmake_syntax import UTF8_BOM, Kind, command_names, find_fault, tokens
+from pytpc.workspace.cmake_syntax import UTF8_BOM, Kind, commands, find_fault, tokens
 from pytpc.workspace.doctor.finding import Finding, error, note, warning
 from pytpc.workspace.doctor.machine import UNSUITED
 from pytpc.workspace.packages import MANIFEST, Manifest, find_cycle
@@ -137,7 +137,7 @@ def _package(package: SeenPackage, known: Known) -> Iterator[Finding]:
     if fault is not None:
         yield error(f"CMake cannot parse this file: {fault.message}", f"{path}:{fault.line}")
         return
-    if not any(name == "project" for name, _ in command_names(package.lists)):
+    if not any(command.name == "project" for command in commands(package.lists)):
         yield error(
             "does not call project() itself",
             path,
