@@ -23,11 +23,11 @@ from pytpc.api.record import (
     record_running,
 )
 from pytpc.base.errors import InputError
+from pytpc.base.signals import stop_on_signals
 from pytpc.base.wording import many
 from pytpc.cli.arguments import as_object
 from pytpc.recording.mission import REPORTS_FOLDER
 from pytpc.ros.ros1.master import uri_of
-from pytpc.ros.ros1.record_graph import stop_on_signals
 
 _PATH = click.Path(path_type=Path)
 _SILENT_S = 5.0

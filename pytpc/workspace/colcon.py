@@ -5,11 +5,9 @@ The user's own build, install and log folders are not touched: everything goes i
 
 from __future__ import annotations
 
-import contextlib
 import os
 import re
 import shutil
-import signal
 import subprocess
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -18,7 +16,7 @@ from pathlib import Path
 
 from pytpc.base.errors import RunError, WorkspaceError
 from pytpc.base.paths import MERGED_FILE, OWN_FOLDER, search_path
-from pytpc.base.signals import signals_end
+from pytpc.base.signals import end_group, signals_end
 from pytpc.workspace.packages import Package
 
 _TAIL_LINES = 25
@@ -256,19 +254,10 @@ def run_lines(
             for line in process.stdout or ():
                 on_line(line.rstrip())
         except BaseException:
-            _end_group(process)
+            # Gently first: colcon then records what it left.
+            end_group(process, 10, 5)
             raise
     return process.returncode
-
-
-def _end_group(process: subprocess.Popen[str]) -> None:
-    """End colcon and the compilers below it, gently first: colcon then records what it left."""
-    for end, patience in ((signal.SIGINT, 10), (signal.SIGTERM, 5), (signal.SIGKILL, None)):
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(process.pid, end)
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            process.wait(timeout=patience)
-            return
 
 
 def _latest_log(bases: Bases) -> Path | None:

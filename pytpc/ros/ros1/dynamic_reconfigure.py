@@ -9,8 +9,7 @@ import struct
 from collections.abc import Mapping
 from typing import Any
 
-from pytpc.ros.ros1.connection import LENGTH, sized
-from pytpc.ros.ros1.service_client import ServiceType, call_service
+from pytpc.ros.ros1.connection import LENGTH, ServiceType, call_service, sized
 from pytpc.values.scalars import type_of
 
 SERVICE = "set_parameters"

@@ -17,11 +17,10 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 from typing import Self
 
 from pytpc.base.errors import MissingToolError, RunError
-from pytpc.base.signals import signals_end
+from pytpc.base.signals import end_group, signals_end
 from pytpc.ros.ros1.master import Master
 
 GRAPH_WORD = "TPC_GRAPH"
@@ -124,12 +123,7 @@ class RosGraph:
             self._exits = exits.pop_all()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """End all that was started."""
         self._exits.close()
 
@@ -195,16 +189,7 @@ class RosGraph:
         """
         if process in self._processes:
             self._processes.remove(process)
-        for number, patience in (
-            (signal.SIGINT, process.patience_s),
-            (signal.SIGTERM, 3.0),
-            (signal.SIGKILL, None),
-        ):
-            with contextlib.suppress(ProcessLookupError):
-                os.killpg(process.popen.pid, number)
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                return process.popen.wait(patience)
-        return process.popen.wait()
+        return end_group(process.popen, process.patience_s, 3.0)
 
     def call(self, method: str, *arguments: object) -> object:
         """Call a method of ROS's master API, which gives code, message and value.

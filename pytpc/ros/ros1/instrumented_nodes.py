@@ -12,9 +12,8 @@ from collections.abc import Mapping
 from pytpc.base.errors import RunError
 from pytpc.python_runtime.config import NAMES
 from pytpc.ros.node_settings import NodeStatus, values_of
-from pytpc.ros.ros1.connection import LENGTH
+from pytpc.ros.ros1.connection import LENGTH, ServiceType, call_service
 from pytpc.ros.ros1.master import Master, reason_of
-from pytpc.ros.ros1.service_client import ServiceType, call_service
 
 _RELOAD = "/tpc/reload"
 _CALLER = "/tpc_sink"

@@ -65,7 +65,8 @@ class RawPublisher:
         self._links: dict[str, list[tuple[str, socket.socket]]] = {topic: [] for topic in topics}
         self._host = own_host(os.environ, master.uri)
         self._listener = socket.create_server(("", 0))
-        self._server = SlaveServer(self._host, self, "")
+        answers = {"requestTopic": self._request, "getPublications": self._publications}
+        self._server = SlaveServer(self._host, answers, "")
         threading.Thread(target=self._accept, daemon=True).start()
 
     def register(self) -> None:
@@ -126,24 +127,13 @@ class RawPublisher:
                 for link in list(links):
                     self._drop(topic, link)
 
-    def _dispatch(self, method: str, arguments: tuple[object, ...]) -> list[object]:
-        """The slave API, as far as one that only publishes is asked."""
-        if method == "requestTopic" and len(arguments) == 3:
-            if arguments[1] not in self._topics:
-                return [0, f"{arguments[1]} is not published here", 0]
-            return [1, "", ["TCPROS", self._host, self._listener.getsockname()[1]]]
-        answers: dict[str, object] = {
-            "getPid": os.getpid(),
-            "getPublications": [[topic, kind.name] for topic, kind in self._topics.items()],
-            "getBusStats": [],
-            "getBusInfo": [],
-            "getSubscriptions": [],
-            "paramUpdate": 0,
-            "publisherUpdate": 0,
-        }
-        if method not in answers:
-            return [0, f"{method} is not for this node", 0]
-        return [1, "", answers[method]]
+    def _request(self, _caller: str, topic: str, _protocols: object) -> list[object]:
+        if topic not in self._topics:
+            raise ValueError(f"{topic} is not published here")
+        return ["TCPROS", self._host, self._listener.getsockname()[1]]
+
+    def _publications(self, _caller: str) -> list[list[str]]:
+        return [[topic, kind.name] for topic, kind in self._topics.items()]
 
     def _accept(self) -> None:
         while True:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
 import threading
 import time
 from collections.abc import Mapping
@@ -134,11 +133,3 @@ def _refuse_earlier(out_dir: Path) -> None:
     if active.exists():
         what = "is an unfinished recording; recover it with rosbag reindex, or give another folder"
         raise RunError(what, active)
-
-
-def stop_on_signals() -> threading.Event:
-    """An event that SIGINT and SIGTERM set, instead of ending the process."""
-    stop = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: stop.set())
-    return stop

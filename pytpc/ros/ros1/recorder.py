@@ -12,17 +12,15 @@ from __future__ import annotations
 import argparse
 import contextlib
 import os
-import signal
-import struct
-import threading
 import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 from pytpc.base.errors import RunError
+from pytpc.base.signals import stop_on_signals
 from pytpc.ingest.losses import LossCounter
-from pytpc.ingest.ros1 import decode_log, decode_string
+from pytpc.ingest.ros1 import decode_log, decode_string, decode_time
 from pytpc.recording.marks import MarkMessages
 from pytpc.ros.mission_run import RecorderStatus, save_status
 from pytpc.ros.ros1.bag_file import BagFile
@@ -38,7 +36,7 @@ _CLOCK = "/clock"
 _MOST_EARLY = 10_000
 _ROSOUT = "/rosout"
 _REPORTS = "/threshold_information"
-_TIME = struct.Struct("<II")
+_CLOCK_BYTES = 8
 
 
 class Recorder:
@@ -76,9 +74,8 @@ class Recorder:
         Raises:
             ValueError: a message that is not of the type of its topic; it is in the bag.
         """
-        if source.topic == _CLOCK and self._sim_time and len(data) >= _TIME.size:
-            seconds, nanoseconds = _TIME.unpack_from(data)
-            self._clock_ns = seconds * 1_000_000_000 + nanoseconds
+        if source.topic == _CLOCK and self._sim_time and len(data) >= _CLOCK_BYTES:
+            self._clock_ns = decode_time(data)
             self._began_ns = self._began_ns or self._clock_ns
         if source.topic in self._topics:
             self._early.append((source, data))
@@ -247,9 +244,7 @@ def record(bag: Path, status: Path, topics: Sequence[str], until: str | None) ->
         RunError: the master does not answer.
         ValueError: a message that is not of the type of its topic.
     """
-    stop = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: stop.set())
+    stop = stop_on_signals()
     master = Master(os.environ["ROS_MASTER_URI"], NODE_NAME)
     graph = GraphRecorder(master, os.environ.get("ROS_IP", "127.0.0.1"), Wanted(topics, until), bag)
     told = 0.0

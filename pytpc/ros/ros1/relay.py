@@ -7,12 +7,12 @@ the raw subscriber, which loses nothing while nodes start; rospy publishes.
 from __future__ import annotations
 
 import os
-import signal
 import threading
 import time
 from collections.abc import Callable, Sequence
 
 from pytpc.base.errors import MissingToolError, RunError
+from pytpc.base.signals import stop_on_signals
 from pytpc.base.wording import many
 from pytpc.ingest.losses import LossCounter
 from pytpc.ingest.ros1 import decode_log
@@ -141,9 +141,7 @@ def run(arguments: Sequence[str], say: Say) -> None:
         raise MissingToolError(
             "rospy is not installed; install it with: apt-get install python3-rospy"
         ) from error
-    stop = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: stop.set())
+    stop = stop_on_signals()
     uri = uri_of(os.environ)
     name = _name(arguments)
     # First, because rospy waits forever for a master.

@@ -11,12 +11,11 @@ The protocols: http://wiki.ros.org/ROS/Slave_API, http://wiki.ros.org/ROS/TCPROS
 from __future__ import annotations
 
 import contextlib
-import os
 import selectors
 import socket
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import cast
 
@@ -107,7 +106,7 @@ class RawSubscriber:
         self._selector = selectors.DefaultSelector()
         self._wake_receive, self._wake_send = socket.socketpair()
         self._selector.register(self._wake_receive, selectors.EVENT_READ)
-        self._server = SlaveServer(host, _SlaveApi(self._on_publishers), host)
+        self._server = SlaveServer(host, {"publisherUpdate": self._update}, host)
         try:
             for topic in topics:
                 self.subscribe(topic)
@@ -177,6 +176,10 @@ class RawSubscriber:
         self._selector.close()
         self._wake_send.close()
 
+    def _update(self, _caller: str, topic: str, publishers: Sequence[str]) -> int:
+        self._on_publishers(topic, publishers)
+        return 0
+
     def _on_publishers(self, topic: str, publishers: Sequence[str]) -> None:
         """The publishers of a topic are these now; connect to those that are new."""
         with self._lock:
@@ -220,25 +223,6 @@ class RawSubscriber:
         self._selector.unregister(connection)
         connection.close()
         threading.Thread(target=self._connect, args=(link.key,), daemon=True).start()
-
-
-class _SlaveApi:
-    """What the master and other nodes ask of a node, as far as one that only listens is asked."""
-
-    def __init__(self, on_publishers: Callable[[str, list[str]], None]) -> None:
-        self._on_publishers = on_publishers
-
-    def _dispatch(self, method: str, arguments: tuple[object, ...]) -> list[object]:
-        if method == "publisherUpdate" and len(arguments) == 3:
-            self._on_publishers(str(arguments[1]), cast(list[str], arguments[2]))
-            return [1, "", 0]
-        if method == "getPid":
-            return [1, "", os.getpid()]
-        if method in ("getBusStats", "getBusInfo", "getSubscriptions", "getPublications"):
-            return [1, "", []]
-        if method == "paramUpdate":
-            return [1, "", 0]
-        return [0, f"{method} is not for this node", 0]
 
 
 def _open(topic: str, publisher: str, name: str) -> tuple[socket.socket, Source]:
