@@ -9,8 +9,7 @@ from pathlib import Path
 
 from pytpc.base.errors import InputError
 from pytpc.build.build import installed, workspace_env
-from pytpc.ros.live_change import set_live, take_back_live
-from pytpc.ros.ros1.live_values import LiveChange, Robot
+from pytpc.ros.ros1.live_values import LiveChange, Robot, set_live, take_back_live
 from pytpc.ros.ros1.master import uri_of
 from pytpc.values.apply import FileChange, apply_change, entry_of, take_back_file
 from pytpc.values.journal import Journal, JournalEntry, folder_of

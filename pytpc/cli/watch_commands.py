@@ -48,7 +48,7 @@ from pytpc.present.marking_terminal import MarkedMission
 from pytpc.present.watch_screen import LAYOUTS, Status, WatchOptions, table
 from pytpc.recording.marking_session import clock_text
 from pytpc.recording.mission import Recording
-from pytpc.ros.marking import GraphMarks
+from pytpc.ros.ros1.marking import GraphMarks
 from pytpc.ros.ros1.master import uri_of
 from pytpc.static.static_info import StaticInfo
 
