@@ -16,9 +16,12 @@ from pytpc.base.paths import cmake_file, prefix
 from pytpc.base.wording import many, plain
 from pytpc.workspace.doctor.finding import Finding, Severity, by_severity
 from pytpc.workspace.doctor.look import look_at_machine
-from pytpc.workspace.doctor.look_workspace import look_at_known, look_at_workspace
 from pytpc.workspace.doctor.machine import check_machine
-from pytpc.workspace.doctor.workspace import check_workspace
+from pytpc.workspace.doctor.workspace import (
+    check_workspace,
+    look_at_known,
+    look_at_workspace,
+)
 from pytpc.workspace.toolchain import Choices, Step, Way, shown, steps
 
 _STYLES = {Severity.ERROR: "bold red", Severity.WARNING: "yellow", Severity.NOTE: "dim"}

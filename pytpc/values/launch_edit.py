@@ -7,9 +7,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from pytpc.values.launch_value import launch_text, launch_value
 from pytpc.values.launch_xml import Attribute, Tag, encoding_of, inner_text, read_tags, written
-from pytpc.values.new_value import Refused, read_value
+from pytpc.values.new_value import Refused, launch_text, launch_value, read_value
 from pytpc.values.scalars import type_of
 from pytpc.values.yaml_edit import Edit, all_settings, edit_yaml
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 import pytest
 
 from pytpc.values.launch_edit import NewText, add_param, edit_argument, edit_inline, edit_param
-from pytpc.values.launch_value import launch_value
 from pytpc.values.launch_xml import meaning, read_tags
-from pytpc.values.new_value import Refused
+from pytpc.values.new_value import Refused, launch_value
 
 
 def param(attributes: str) -> str:

@@ -17,7 +17,7 @@ from pytpc.base.atomic import replace_file
 from pytpc.values.apply import FileChange, apply_change, undo_change
 from pytpc.values.journal import Journal
 from pytpc.values.launch_edit import edit_param
-from pytpc.values.launch_value import launch_value
+from pytpc.values.new_value import launch_value
 from pytpc.values.yaml_edit import edit_yaml
 
 NAMES = st.sampled_from(["a", "b", "limit", "rate_2", "größe", "x-y", "Null_", "on_off"])

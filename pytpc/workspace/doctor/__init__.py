@@ -1,4 +1,5 @@
 """What would keep a build with TPC from working, found before it is started.
 
-``machine`` and ``workspace`` have the checks, which are functions of what ``look`` has seen.
+``machine`` checks what ``look`` has seen of the machine; ``workspace`` looks at a workspace and
+checks it.
 """

@@ -20,6 +20,7 @@ from pytpc.base.paths import (
     prefix,
     ros_places,
     search_path,
+    sourced_prefixes,
 )
 from pytpc.workspace.doctor.machine import COLCON_EXTENSIONS, MODULES, Machine, Program
 
@@ -59,19 +60,14 @@ def look_at_machine(folder: Path) -> Machine:
         folder: of whose disk the space is wanted; the nearest one upward that there is.
     """
     programs = {
-        name: Program(Path(path), version_of(_said([path, "--version"])))
+        name: Program(Path(path), version_of(output_of([path, "--version"])))
         for name in BUILD_TOOLS
         if (path := shutil.which(name, path=search_path())) is not None
     }
     python = shutil.which("python3")
     modules, extensions = _ask_python()
     missing = tuple(part for part in _PARTS if not (prefix() / part).exists())
-    told = [
-        Path(name)
-        for variable in ("CMAKE_PREFIX_PATH", "AMENT_PREFIX_PATH")
-        for name in os.environ.get(variable, "").split(os.pathsep)
-        if name
-    ]
+    told = sourced_prefixes()
     disk = folder.absolute()
     while not disk.exists():
         disk = disk.parent
@@ -90,7 +86,7 @@ def look_at_machine(folder: Path) -> Machine:
         disk_free=shutil.disk_usage(disk).free,
         memory_free=_free_memory(Path("/proc/meminfo")),
         setup="make setup" if is_checkout() else how_to_install(),
-        ccache=ccache_settings(_said(["ccache", "--show-config"])),
+        ccache=ccache_settings(output_of(["ccache", "--show-config"])),
     )
 
 
@@ -108,7 +104,7 @@ def ccache_settings(said: str) -> dict[str, str]:
 
 def _ask_python() -> tuple[Mapping[str, str], frozenset[str]]:
     names = [json.dumps(list(MODULES)), json.dumps(COLCON_EXTENSIONS)]
-    said = _said(["/usr/bin/python3", "-c", _QUESTION, *names])
+    said = output_of(["/usr/bin/python3", "-c", _QUESTION, *names])
     try:
         answer = json.loads(said)
     except ValueError:
@@ -140,7 +136,8 @@ def _free_memory(file: Path) -> int:
     return int(found[1]) * 1024 if found else 1 << 40
 
 
-def _said(command: Sequence[str]) -> str:
+def output_of(command: Sequence[str]) -> str:
+    """The output of a program; empty if it is not installed or takes too long."""
     ran = _run(command)
     return "" if ran is None else ran.stdout
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from pytpc.base.paths import BUILD_TOOLS, ROS_PACKAGES
+from pytpc.base.paths import BUILD_TOOLS, ROS_PACKAGES, sourced_prefixes
 from pytpc.workspace.doctor.finding import Finding, error, note, warning
 
 # cmake_language(DEFER), by which tpc.cmake sees the finished targets, came with 3.19.
@@ -154,17 +154,9 @@ def _ros(machine: Machine) -> Iterator[Finding]:
             f"{' and '.join(absent)} of ROS 1 not found: catkin packages cannot be built",
             mend=f"apt-get install {ROS_PACKAGES}",
         )
-    told = [
-        folder
-        for name in ("CMAKE_PREFIX_PATH", "AMENT_PREFIX_PATH")
-        for folder in machine.environment.get(name, "").split(":")
-        if folder
-    ]
-    distributions = list(
-        dict.fromkeys(
-            found[1] for folder in told if (found := re.match(r"/opt/ros/([^/]+)", folder))
-        )
-    )
+    told = sourced_prefixes(machine.environment)
+    found = (re.match(r"/opt/ros/([^/]+)", str(folder)) for folder in told)
+    distributions = list(dict.fromkeys(match[1] for match in found if match))
     sourced = machine.environment.get("ROS_DISTRO")
     if len(distributions) > 1:
         yield warning(
@@ -179,7 +171,7 @@ def _ros(machine: Machine) -> Iterator[Finding]:
             "start a new shell and source one of them",
         )
     for folder in dict.fromkeys(told):
-        if Path(folder) not in machine.folders:
+        if folder not in machine.folders:
             yield warning(
                 "a set-up file of a folder that does not exist was sourced",
                 folder,
