@@ -308,19 +308,15 @@ def _gather(
     folders = [
         folder for folder in (base / each.name for each in scripts.packages) if folder.is_dir()
     ]
-    _drop_stale(folders)
+    for folder in folders:
+        for stale in stale_files(folder, _compiled(folder)):
+            stale.unlink()
     units = [load_link_unit(path) for folder in folders for path in _compiled(folder)]
     left_out = [*_left_out(folders, left_alone)]
     nodes = python_of_build(scripts, {*names_of(units), *names_of(left_out)}, on_scripts)
     units += nodes.units
     found = (*left_out, *nodes.left_out)
     return StaticInfo.of(units, base, find_copies(units), found)
-
-
-def _drop_stale(folders: Iterable[Path]) -> None:
-    for folder in folders:
-        for stale in stale_files(folder, _compiled(folder)):
-            stale.unlink()
 
 
 def _compiled(folder: Path) -> list[Path]:

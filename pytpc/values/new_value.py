@@ -30,7 +30,6 @@ class Refused(ValueError):
     """A change that is refused; ``lineno`` is the line in question, counted from 1."""
 
     def __init__(self, message: str, lineno: int | None = None) -> None:
-        """See the class."""
         super().__init__(message)
         self.lineno = lineno
 

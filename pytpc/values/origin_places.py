@@ -74,7 +74,6 @@ class Places:
     """Turns the settings of a trace into origins."""
 
     def __init__(self, trace: Trace) -> None:
-        """See the class."""
         self._trace = trace
         self._files = _Files()
 

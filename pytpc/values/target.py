@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import filecmp
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -283,36 +284,22 @@ def _why_not(origin: Origin) -> str:
 
 def _where(path: Path, real: Path) -> tuple[str, ...]:
     """Notes on the file that a change goes to."""
-    return (*_copies(path, real), *_other_names(real))
-
-
-def _other_names(real: Path) -> tuple[str, ...]:
-    try:
-        others = real.stat().st_nlink - 1
-    except OSError:
-        others = 0
-    if others < 1:
-        return ()
-    return (f"{others} other names (hard links) of this file keep the old text",)
-
-
-def _copies(path: Path, real: Path) -> tuple[str, ...]:
+    notes = []
     if path.resolve() != real:
-        differs = "" if _same_bytes(path, real) else ", which is older or newer than it"
-        return (
+        same = path.is_file() and filecmp.cmp(path, real, shallow=False)
+        differs = "" if same else ", which is older or newer than it"
+        notes.append(
             f"the robot reads the installed copy {path}{differs}: build the workspace again for"
-            " the change to reach it",
+            " the change to reach it"
         )
-    if is_installed(real):
-        return ("this is an installed copy, and no source of it is found: a build overwrites it",)
-    return ()
-
-
-def _same_bytes(one: Path, other: Path) -> bool:
-    try:
-        return one.read_bytes() == other.read_bytes()
-    except OSError:
-        return False
+    elif is_installed(real):
+        notes.append(
+            "this is an installed copy, and no source of it is found: a build overwrites it"
+        )
+    others = real.stat().st_nlink - 1
+    if others > 0:
+        notes.append(f"{others} other names (hard links) of this file keep the old text")
+    return tuple(notes)
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -7,12 +7,11 @@ workspace is never half patched. What a file needs to be is worked out in
 A run that was killed between two files leaves the first ones patched; the next run does the others
 and removes what the killed one had written beside them.
 
-Commands: ``python -m pytpc.workspace.patch``, ``pytpc patch`` and ``modify_cmakelists.py``.
+``pytpc patch`` and ``modify_cmakelists.py`` call ``run``.
 """
 
 from __future__ import annotations
 
-import argparse
 import contextlib
 import fcntl
 import os
@@ -23,7 +22,7 @@ from pathlib import Path
 
 from pytpc.base.atomic import leftovers, stage_like
 from pytpc.base.diff import unified_diff
-from pytpc.base.errors import InputError, TpcError, WorkspaceError
+from pytpc.base.errors import InputError, WorkspaceError
 from pytpc.base.paths import cmake_file
 from pytpc.workspace.cmake_block import MARKER, patch_text, restore_text
 from pytpc.workspace.cmake_syntax import commands
@@ -38,22 +37,7 @@ from pytpc.workspace.packages import (
     select_packages,
 )
 
-__all__ = [
-    "ListFileChange",
-    "apply_changes",
-    "calls_project",
-    "diff",
-    "main",
-    "patch_text",
-    "plan",
-    "plan_tree",
-    "restore_text",
-    "run",
-]
-
-
 _LIST_FILE = "CMakeLists.txt"
-_WHOSE = {False: "package's CMakeLists.txt,", True: "CMakeLists.txt that calls project(),"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -251,52 +235,6 @@ def _alone(folder: Path) -> Iterator[None]:
         yield
 
 
-def main(
-    arguments: Sequence[str] | None = None,
-    program: str = "python -m pytpc.workspace.patch",
-    *,
-    any_tree: bool = False,
-) -> int:
-    """The command line; it needs no package from outside Debian, unlike ``pytpc``.
-
-    Args:
-        arguments: without the program's name; those of the process where None.
-        program: how it is called in its help.
-        any_tree: take any folder with CMake projects, packages or not.
-
-    Returns:
-        The exit status: 0, 1 after an error that was shown as one line, 130 when interrupted.
-    """
-    parser = argparse.ArgumentParser(
-        prog=program,
-        description=f"Put TPC's three lines at the top of each {_WHOSE[any_tree]}"
-        " or take them out again.",
-    )
-    help_text = "any folder" if any_tree else "folder with ROS packages"
-    parser.add_argument("workspace", type=Path, metavar="folder", help=help_text)
-    parser.add_argument("--restore", action="store_true", help="take the lines out again")
-    parser.add_argument("--dry-run", action="store_true", help="Show the difference only.")
-    if not any_tree:
-        parser.add_argument(
-            "--package", action="append", metavar="NAME", help="only this one (repeatable)"
-        )
-    chosen = parser.parse_args(arguments)
-    try:
-        run(
-            chosen.workspace,
-            restore=chosen.restore,
-            dry_run=chosen.dry_run,
-            packages=() if any_tree else chosen.package or (),
-            any_tree=any_tree,
-        )
-    except TpcError as error:
-        print(f"pytpc: error: {error}", file=sys.stderr)
-        return 1
-    except KeyboardInterrupt:
-        return 130
-    return 0
-
-
 def _plan_files(
     files: Iterable[tuple[Path, bytes]], *, restore: bool
 ) -> tuple[list[ListFileChange], int]:
@@ -331,7 +269,3 @@ def _list_files(folder: Path) -> Iterator[Path]:
         below[:] = sorted(name for name in below if not name.startswith("."))
         if _LIST_FILE in files:
             yield Path(here, _LIST_FILE)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

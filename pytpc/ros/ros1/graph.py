@@ -87,7 +87,6 @@ class RosGraph:
     """
 
     def __init__(self, env: Mapping[str, str], folder: Path, *, use_sim_time: bool = False) -> None:
-        """See the class; nothing runs yet."""
         self.folder = folder.absolute()
         self.uri = ""
         self._word = secrets.token_hex(8)

@@ -51,7 +51,6 @@ class InstrumentedNodes:
     """
 
     def __init__(self, master: str) -> None:
-        """See the class; nothing is asked yet."""
         self._master = Master(master, _CALLER)
 
     def names(self) -> list[str]:

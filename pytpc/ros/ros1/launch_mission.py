@@ -1,9 +1,7 @@
 """Runs one mission on a real ROS graph and records it.
 
-``run_mission`` leaves in the folder that it is given: ``mission.bag``, ``params.yaml`` (what stood
-on the parameter server at the end; ``params_start.yaml`` right after the launch), ``origins.json``
-(where these values came from), ``run.json`` (how it went), ``tpc/`` (the files of nodes with the
-sink ``file``) and ``ros/`` (the output of all processes).
+The folder gets the files that ``pytpc.ros.mission_run`` names, and ``ros/`` with the output of all
+processes.
 """
 
 from __future__ import annotations

@@ -45,7 +45,6 @@ class Robot:
     """The running graph at a master."""
 
     def __init__(self, master: str) -> None:
-        """Nothing is asked yet."""
         self._master = Master(master, _CALLER)
 
     def parameters(self) -> list[str]:

@@ -99,7 +99,6 @@ class Master:
     """
 
     def __init__(self, uri: str, caller: str) -> None:
-        """See the class; nothing is asked yet."""
         self.uri = uri
         self.caller = caller
 

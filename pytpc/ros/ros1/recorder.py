@@ -48,7 +48,6 @@ class Recorder:
     def __init__(
         self, bag: BagFile, topics: Sequence[str], until: str | None, sim_time: bool
     ) -> None:
-        """See the class."""
         self._bag = bag
         self._topics = set(topics)
         self._until = until

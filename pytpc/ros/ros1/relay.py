@@ -55,7 +55,6 @@ class Relay:
     """
 
     def __init__(self, publish: Callable[[str], object]) -> None:
-        """See the class."""
         self._publish = publish
         self._counter: LossCounter[str] = LossCounter()
         self.passed_on = 0
@@ -102,7 +101,6 @@ class MasterWatch:
     def __init__(
         self, is_known: Callable[[], bool], register: Callable[[], None], say: Say
     ) -> None:
-        """See the class."""
         self._is_known = is_known
         self._register = register
         self._say = say

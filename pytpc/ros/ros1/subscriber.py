@@ -49,7 +49,6 @@ class Frames:
     """Cuts a stream of bytes into messages, each of which stands after its length."""
 
     def __init__(self) -> None:
-        """Nothing was received yet."""
         self._buffer = bytearray()
 
     def feed(self, data: bytes) -> list[bytes]:
