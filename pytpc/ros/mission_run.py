@@ -67,6 +67,12 @@ class Progress:
     reports: int
     marks: int
 
+    @classmethod
+    def of(cls, status: RecorderStatus, wall_s: float) -> Progress:
+        """The progress of the mission whose recorder has this status."""
+        sim_s = (status.now_ns - status.began_ns) / 1e9 if status.began_ns else 0.0
+        return cls(sim_s, wall_s, status.reports, marks_of(status.messages))
+
 
 @dataclass(frozen=True, slots=True)
 class RecordOptions:

@@ -21,7 +21,7 @@ from pathlib import Path
 from pytpc.base.errors import InputError, RunError, TpcError, WorkspaceError
 from pytpc.base.paths import BUILD_TOOLS, cmake_file, installed, require_tools
 from pytpc.base.wording import plain
-from pytpc.build.faults import first_error
+from pytpc.build.fallback import first_error
 from pytpc.static.link_unit import LinkUnit
 from pytpc.static.static_info import load_link_unit, unit_files
 from pytpc.workspace.cmake_syntax import find_fault

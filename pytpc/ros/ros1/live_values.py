@@ -11,10 +11,13 @@ Protocol: http://wiki.ros.org/ROS/Parameter%20Server%20API.
 from __future__ import annotations
 
 import contextlib
+import struct
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from pytpc.base.errors import InputError, RunError, TpcError
-from pytpc.ros.ros1.dynamic_reconfigure import SERVICE, reconfigure
+from pytpc.ros.ros1.connection import LENGTH, ServiceType, call_service, sized
 from pytpc.ros.ros1.master import Master
 from pytpc.values.apply import shown
 from pytpc.values.journal import Journal, JournalEntry
@@ -23,6 +26,10 @@ from pytpc.values.origins import from_json, to_json
 from pytpc.values.scalars import type_of
 
 _CALLER = "/tpc_apply"
+_SERVICE = "set_parameters"
+_RECONFIGURE = ServiceType("dynamic_reconfigure/Reconfigure", "bb125d226a21982a4a98760418dc2672")
+# The parts of the message in their order, with the form of a value; texts have none.
+_PARTS: Mapping[str, str] = {"bool": "<?", "int": "<i", "string": "", "double": "<d"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +95,7 @@ class Robot:
         if not isinstance(new, bool | int | float | str):
             raise InputError(f"{name} is a {type_of(new)}, which cannot be set on a running robot")
         state = self._master.state()
-        service = f"{name.rpartition('/')[0]}/{SERVICE}"
+        service = f"{name.rpartition('/')[0]}/{_SERVICE}"
         below = tuple(sorted(node for node in state.nodes if name.startswith(f"{node}/")))
         taken_by = service if service in state.services else ""
         return LiveChange(self._master.uri, name, old, new, taken_by, below)
@@ -122,7 +129,7 @@ class Robot:
         uri = self._master.service_uri(service) if service else None
         if uri is not None:
             try:
-                taken = reconfigure(uri, service, name.rpartition("/")[2], value, _CALLER)
+                taken = _reconfigure(uri, service, name.rpartition("/")[2], value, _CALLER)
             except (OSError, ValueError) as error:
                 raise RunError(f"{service} does not take it: {error}") from error
             # A name that is not among what the node sets may be in its answer all the same, but
@@ -183,3 +190,70 @@ def take_back_live(
     if not dry_run:
         robot.take_back(name, old, str(live["service"]))
         journal.remove(entry)
+
+
+def _reconfigure(uri: str, service: str, name: str, value: object, caller: str) -> object:
+    """Call ``set_parameters`` at ``rosrpc://HOST:PORT``; the value that the node then has.
+
+    None where the answer does not have the name.
+
+    Raises:
+        OSError: nobody is there, or does not answer in time.
+        ValueError: what is there does not speak the protocol, or refuses.
+    """
+    request = _encode_config(name, value)
+    return _decode_config(call_service(uri, service, _RECONFIGURE, request, caller)).get(name)
+
+
+def _encode_config(name: str, value: object) -> bytes:
+    """A dynamic_reconfigure/Config with one value; its lists stand by type.
+
+    Raises:
+        ValueError: a value that such a message has no list for, or a number that is too large.
+    """
+    kind = type_of(value)
+    if kind not in _PARTS:
+        raise ValueError(f"no {kind} in dynamic_reconfigure")
+    message = b""
+    for part, form in _PARTS.items():
+        message += LENGTH.pack(part == kind)
+        if part == kind:
+            try:
+                data = struct.pack(form, value) if form else sized(str(value).encode())
+            except struct.error as error:
+                raise ValueError(f"{value} does not fit: {error}") from error
+            message += sized(name.encode()) + data
+    return message + LENGTH.pack(0)
+
+
+def _decode_config(data: bytes) -> dict[str, bool | int | float | str]:
+    """The values of a dynamic_reconfigure/Config, without its groups.
+
+    Raises:
+        ValueError: the bytes are no such message.
+    """
+    values: dict[str, Any] = {}
+    at = 0
+
+    def text() -> str:
+        nonlocal at
+        (length,) = LENGTH.unpack_from(data, at)
+        at += LENGTH.size + length
+        if at > len(data):
+            raise ValueError("a text goes past the end")
+        return data[at - length : at].decode("utf-8", "replace")
+
+    try:
+        for form in _PARTS.values():
+            (count,) = LENGTH.unpack_from(data, at)
+            at += LENGTH.size
+            for _ in range(count):
+                name = text()
+                if form:
+                    (values[name],) = struct.unpack_from(form, data, at)
+                    at += struct.calcsize(form)
+                else:
+                    values[name] = text()
+    except struct.error as error:
+        raise ValueError(f"no dynamic_reconfigure/Config: {error}") from error
+    return values

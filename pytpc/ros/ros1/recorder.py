@@ -4,7 +4,7 @@ All reports of all nodes go through one topic, thousands in a second. Nothing is
 is not yet read waits in the publishers, whose queues for /rosout have no end. Each node numbers
 its messages on /rosout, so a loss would be seen and is counted.
 
-It runs below ``pytpc.ros.ros1.launch_mission``, which reads the status file that it keeps.
+It runs below ``pytpc.ros.ros1.record_mission``, which reads the status file that it keeps.
 """
 
 from __future__ import annotations
@@ -256,7 +256,7 @@ def record(bag: Path, status: Path, topics: Sequence[str], until: str | None) ->
 
 
 def main() -> None:
-    """Read the arguments that ``pytpc.ros.ros1.launch_mission`` gives."""
+    """Read the arguments that ``pytpc.ros.ros1.record_mission`` gives."""
     parser = argparse.ArgumentParser(description="records topics into a bag")
     parser.add_argument("--bag", type=Path, required=True)
     parser.add_argument("--status", type=Path, required=True)
