@@ -69,9 +69,6 @@ _FUNCTIONS: dict[str, Callable[..., object]] = {
 _NAMES: dict[str, object] = {
     "math.pi": math.pi,
     "pi": math.pi,
-    "True": True,
-    "False": False,
-    "None": None,
     "numpy.pi": math.pi,
     "np.pi": math.pi,
 }
@@ -227,8 +224,7 @@ class _CfgReader:
             self._value(call)
         except _UnknownError as why:
             # What has nothing to do with the generator declares nothing.
-            words = [call.func, *call.args, *(keyword.value for keyword in call.keywords)]
-            if any(self._is_generator(node) for word in words for node in ast.walk(word)):
+            if self._mentions_generator([call]):
                 self.skip(call.lineno, f"{_source(call)}: {why}")
 
     def _loop(self, name: str, over: ast.expr, body: list[ast.stmt]) -> None:
@@ -245,10 +241,11 @@ class _CfgReader:
         try:
             self.run(body if self._value(test) else orelse)
         except _UnknownError:
-            if any(
-                self._is_generator(node) for part in (*body, *orelse) for node in ast.walk(part)
-            ):
+            if self._mentions_generator([*body, *orelse]):
                 self.skip(test.lineno, f"it depends on {_source(test)}")
+
+    def _mentions_generator(self, parts: Iterable[ast.AST]) -> bool:
+        return any(self._is_generator(node) for part in parts for node in ast.walk(part))
 
     def _is_generator(self, node: ast.AST) -> bool:
         return isinstance(node, ast.Name) and isinstance(self._values.get(node.id), _Generator)

@@ -53,11 +53,8 @@ def edit_param(data: bytes, name: str, lineno: int, given: str, *, force: bool =
         Refused: see docs/how-to/change-a-parameter.md.
     """
     tags = tags_of(data)
-    found = [t for t in tags if t.name == "param" and _names(t, name)]
-    here = [tag for tag in found if tag.lineno == lineno] or (found if len(found) == 1 else [])
-    if len(here) != 1:
-        raise Refused(f"the <param> for {name} is gone; {_GIVE}", lineno or None)
-    tag = here[0]
+    found = [tag for tag in tags if tag.name == "param" and _names(tag, name)]
+    tag = _only(found, lineno, f"the <param> for {name}")
     value = tag.attributes.get("value")
     if value is None:
         raise Refused("its value is the text of a file, or the output of a command", tag.lineno)
@@ -85,11 +82,8 @@ def edit_argument(
         Refused: see docs/how-to/change-a-parameter.md.
     """
     tags = tags_of(data)
-    found = [t for t in tags if t.name == "arg" and _attribute(t, "name") == name]
-    here = [tag for tag in found if tag.lineno == lineno] or (found if len(found) == 1 else [])
-    if len(here) != 1:
-        raise Refused(f"the <arg> {name} is gone; {_GIVE}", lineno or None)
-    tag = here[0]
+    found = [tag for tag in tags if tag.name == "arg" and _attribute(tag, "name") == name]
+    tag = _only(found, lineno, f"the <arg> {name}")
     value = tag.attributes.get("value") or tag.attributes.get("default")
     if value is None:
         raise Refused(f"<arg> {name} has no value here", tag.lineno)
@@ -102,6 +96,14 @@ def edit_argument(
         notes = [f"line {lines} uses <arg> {name}, too, and changes with it"]
     edit = _edit_attribute(data, tag, value, given)
     return replace(edit, notes=(*edit.notes, *notes))
+
+
+def _only(found: list[Tag], lineno: int, what: str) -> Tag:
+    """The tag in this line, else the only one."""
+    here = [tag for tag in found if tag.lineno == lineno] or found
+    if len(here) != 1:
+        raise Refused(f"{what} is gone; {_GIVE}", lineno or None)
+    return here[0]
 
 
 def edit_inline(

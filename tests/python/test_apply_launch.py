@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from pytpc.values.launch_edit import NewText, add_param, edit_argument, edit_inline, edit_param
-from pytpc.values.launch_xml import meaning, read_tags
+from pytpc.values.launch_xml import read_tags
 from pytpc.values.new_value import Refused, launch_value
 
 
@@ -258,4 +258,5 @@ def test_the_places_of_tags() -> None:
 
 
 def test_white_space_in_attributes() -> None:
-    assert meaning("a\r\nb\tc") == "a b c"
+    (tag,) = read_tags(b"<param value='a\r\nb\tc &lt;&#65;&#x42;&quot;'/>")
+    assert tag.attributes["value"].value == 'a b c <AB"'

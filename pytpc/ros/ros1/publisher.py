@@ -14,7 +14,7 @@ import select
 import socket
 import struct
 import threading
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from pytpc.base.errors import RunError
@@ -55,9 +55,15 @@ class RawPublisher:
     Args:
         master: the ROS master; its caller is the node that this is.
         topics: with the type of their messages.
+        on_shutdown: called when the master or ``rosnode kill`` ends this node.
     """
 
-    def __init__(self, master: Master, topics: Mapping[str, MessageType]) -> None:
+    def __init__(
+        self,
+        master: Master,
+        topics: Mapping[str, MessageType],
+        on_shutdown: Callable[[], None] = lambda: None,
+    ) -> None:
         """See the class; on return subscribers are served, though none knows of it yet."""
         self._master = master
         self._topics = dict(topics)
@@ -65,7 +71,12 @@ class RawPublisher:
         self._links: dict[str, list[tuple[str, socket.socket]]] = {topic: [] for topic in topics}
         self._host = own_host(os.environ, master.uri)
         self._listener = socket.create_server(("", 0))
-        answers = {"requestTopic": self._request, "getPublications": self._publications}
+        self._on_shutdown = on_shutdown
+        answers = {
+            "requestTopic": self._request,
+            "getPublications": self._publications,
+            "shutdown": self._shutdown,
+        }
         self._server = SlaveServer(self._host, answers, "")
         threading.Thread(target=self._accept, daemon=True).start()
 
@@ -134,6 +145,10 @@ class RawPublisher:
 
     def _publications(self, _caller: str) -> list[list[str]]:
         return [[topic, kind.name] for topic, kind in self._topics.items()]
+
+    def _shutdown(self, _caller: str, _reason: str = "") -> int:
+        self._on_shutdown()
+        return 0
 
     def _accept(self) -> None:
         while True:
