@@ -19,7 +19,7 @@ from pytpc.workspace.colcon import Bases, BuildError
 from pytpc.workspace.packages import Package
 
 # gcc comes with OpenMP; for clang it is a separate package.
-OPENMP_MEND = "clang's OpenMP may be what is missing: apt-get install libomp-19-dev"
+OPENMP_MEND = "clang's OpenMP may be missing: apt-get install libomp-19-dev"
 _OPENMP = re.compile(r"Could NOT find OpenMP|'omp\.h' file not found|unable to find library -lomp")
 _CMAKE_ERROR = re.compile(r"^CMake Error(?: at (?P<place>[^\s:]+:\d+))?")
 _ERRORS = tuple(

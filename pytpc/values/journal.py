@@ -200,4 +200,4 @@ def _read(path: Path) -> JournalEntry:
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}", path) from error
     except (ValueError, KeyError, TypeError) as error:
-        raise InputError(f"not a change that was noted: {error}", path) from error
+        raise InputError(f"not a recorded change: {error}", path) from error

@@ -31,7 +31,7 @@ def tags_of(data: bytes) -> list[Tag]:
 class NewText(NamedTuple):
     """A new value as typed, and the ``type`` of the parameter's tag.
 
-    ``force`` changes the type, replaces what roslaunch works out, and changes other uses with it.
+    ``force`` changes the type, replaces what roslaunch computes, and changes other uses with it.
     """
 
     text: str
@@ -47,7 +47,7 @@ def edit_param(data: bytes, name: str, lineno: int, given: str, *, force: bool =
         name: the parameter's full name.
         lineno: the line of the tag; 0 where it is not known.
         given: the new value as typed.
-        force: change the type, or replace what roslaunch works out.
+        force: change the type, or replace what roslaunch computes.
 
     Raises:
         Refused: see docs/how-to/change-a-parameter.md.
@@ -194,7 +194,7 @@ def _edit_attribute(data: bytes, tag: Tag, attribute: Attribute, given: NewText)
     if "$(" in old_text:
         if not force:
             raise Refused(
-                f"roslaunch works its value out: {old_text}; --force replaces it", tag.lineno
+                f"roslaunch computes its value: {old_text}; --force replaces it", tag.lineno
             )
         notes.append(f"{old_text} is replaced by a value")
         old: object = old_text

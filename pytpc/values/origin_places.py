@@ -138,7 +138,7 @@ class Places:
         if found.shared:
             note = f"it is written for more than this place ({found.shared})"
         elif setting.get("substituted") and "$(" in found.node.text:
-            note = "roslaunch puts something in here (subst_value)"
+            note = "roslaunch substitutes a part of it (subst_value)"
         text = self._files.line(path, lineno)
         return replace(unknown, lineno=lineno, text=text, note=note, keys=found.keys)
 
@@ -159,7 +159,7 @@ class Places:
             place = place.get("arguments", {}).get(name, {"tag": "unknown"})
         if place is setting:
             return replace(
-                origin, note=f"roslaunch works it out: {written}" if "$(" in written else ""
+                origin, note=f"roslaunch computes it: {written}" if "$(" in written else ""
             )
         if place["tag"] == _COMMAND_LINE:
             given = f"{name}:={place.get('value', '')} on roslaunch's command line"
@@ -169,7 +169,7 @@ class Places:
         path, lineno = Path(place["file"]), int(place["lineno"])
         note = f"<arg> {name}, which may be used elsewhere, too"
         if "$(" in str(place.get("written", "")):
-            note = f"roslaunch works out <arg> {name}: {place['written']}"
+            note = f"roslaunch computes <arg> {name}: {place['written']}"
         return replace(
             origin,
             path=path,

@@ -141,7 +141,7 @@ def plan_yaml(path: Path, parameter: str, given: str, *, force: bool = False) ->
         if len(meant) != 1:
             names = _listed(["/".join(keys) for keys in meant])
             what = f"several values end with {parameter}: {names}" if meant else ""
-            raise Refused(what or f"{parameter} does not stand in it")
+            raise Refused(what or f"{parameter} is not in the file")
         edit = edit_yaml(text, meant[0], given, force=force)
     except Refused as error:
         raise InputError(str(error), path, error.lineno) from error

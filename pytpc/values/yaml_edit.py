@@ -54,8 +54,8 @@ def edit_yaml(text: str, keys: Keys, given: str, *, force: bool = False) -> Edit
     documents = all_settings(text)
     having = [document for document in documents if keys in document]
     if len(having) != 1:
-        where = "nowhere" if not having else f"in {len(having)} documents"
-        raise Refused(f"{'/'.join(keys)} stands {where} in it")
+        where = f"in {len(having)} documents of the file" if having else "not in the file"
+        raise Refused(f"{'/'.join(keys)} is {where}")
     setting = having[0][keys]
     node, spot = setting.node, setting.written
     if spot.kind != "alias" or node.kind == "list":
@@ -63,7 +63,7 @@ def edit_yaml(text: str, keys: Keys, given: str, *, force: bool = False) -> Edit
     old = _read(node)
     if "$(" in node.text and not force:
         raise Refused(
-            f"roslaunch puts something in here: {node.text}; --force replaces it", node.lineno
+            f"roslaunch substitutes a part of it: {node.text}; --force replaces it", node.lineno
         )
     notes = _notes(having[0], setting, spot, force)
     pieces: list[tuple[YamlNode, str]]
@@ -71,7 +71,7 @@ def edit_yaml(text: str, keys: Keys, given: str, *, force: bool = False) -> Edit
     if isinstance(old, list):
         pieces, new = _list_pieces(node, given, force)
     else:
-        # Of what roslaunch puts in the type is not known.
+        # The type of what roslaunch substitutes is not known.
         worked_out = "$(" in node.text
         new = guessed(given) if worked_out else read_value(given, type_of(old), force=force)
         piece, more = _piece(node, new, given)
@@ -153,7 +153,7 @@ def _list_pieces(
         raise Refused("the parameter is a list: give all of it, as in '[1.0, 2.0]'", node.lineno)
     if len(wanted) != len(node.items):
         had = len(node.items)
-        raise Refused(f"the list has {had} values, and {len(wanted)} are given", node.lineno)
+        raise Refused(f"the list has {had} values, but {len(wanted)} were given", node.lineno)
     pieces: list[tuple[YamlNode, str]] = []
     new: list[object] = []
     for item, one in zip(node.items, wanted, strict=True):

@@ -107,7 +107,7 @@ def test_a_note(apply, params: Path, tmp_path: Path) -> None:
     # What stood in the file may be nobody else's business.
     assert note.stat().st_mode & 0o777 == 0o600
     note.write_text('{"schema": 9}')
-    assert f"{note}: not a change that was noted" in apply("--list").output
+    assert f"{note}: not a recorded change" in apply("--list").output
 
 
 def test_where_the_notes_are(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -177,8 +177,8 @@ def test_a_note_that_is_broken_keeps_no_other_from_being_taken_back(
     apply(params, "mission/limit", "0.035")
     broken = tmp_path / "state/tpc/applied/000009.json"
     broken.write_text("{")
-    assert "000009.json: not a change that was noted" in apply("--list").output
-    assert "000009.json: not a change that was noted" in apply("--undo").output
+    assert "000009.json: not a recorded change" in apply("--list").output
+    assert "000009.json: not a recorded change" in apply("--undo").output
     assert params.read_bytes() == before
     assert broken.read_text() == "{"
 

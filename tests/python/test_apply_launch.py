@@ -45,7 +45,7 @@ def test_a_param(before: str, given: str, after: str) -> None:
         ('name="x" value="7"', "7.5", "a whole number"),
         ('name="x" value="0.5"', "inf", "give the tag a type"),
         ('name="x" value="map"', "5", "give the tag a type"),
-        ('name="x" value="$(eval 1+2)"', "5", "roslaunch works its value out"),
+        ('name="x" value="$(eval 1+2)"', "5", "roslaunch computes its value"),
         ('name="x" command="date"', "5", "the output of a command"),
         ('name="x" value="{a: 1}" type="yaml"', "5", 'type="yaml"'),
         ('name="y" value="7"', "8", "the <param> for /n/x is gone"),

@@ -74,7 +74,7 @@ def test_watch_says_each_change_once_and_registers_where_it_is_not_known():
         watch.look()
     # One answer is left when the master does not know the node.
     assert registered == [1]
-    gone = "no answer; what is connected goes on, and the master is waited for"
+    gone = "no answer; connected nodes are still heard; waiting for the master"
     again = "the ROS master was started again: registered with it"
     assert said == [gone, "the ROS master answers again", gone, again]
 

@@ -131,7 +131,7 @@ class Robot:
             try:
                 taken = _reconfigure(uri, service, name.rpartition("/")[2], value, _CALLER)
             except (OSError, ValueError) as error:
-                raise RunError(f"{service} does not take it: {error}") from error
+                raise RunError(f"{service} refuses the value: {error}") from error
             # A name that is not among what the node sets may be in its answer all the same, but
             # before it answers it has written to the server all that it does set.
             if taken is not None and self.value(name) == taken:

@@ -95,7 +95,7 @@ class GraphMarks:
         listeners = self._publisher.listeners()
         heard = f"{many(len(listeners), 'node')} listening" if listeners else "nobody listens"
         if self._held:
-            heard += f", {many(len(self._held), 'message')} kept for who comes"
+            heard += f", {many(len(self._held), 'message')} kept for later listeners"
         clock = "wall time" if self._clock_ns is None else "simulated time"
         clock = "no /clock yet" if now_ns is None else clock
         status = f"{self._fault or 'connected'}; {heard}; {clock}"
@@ -147,7 +147,9 @@ class GraphMarks:
                 self._fault = ""
             except RunError:
                 if not self._fault:
-                    self._fault = "the ROS master is gone: marks are kept, and sent to who is left"
+                    self._fault = (
+                        "the ROS master is gone: marks go to the nodes that are still connected"
+                    )
             self._looked.set()
             self._ended.wait(_LOOK_S)
 

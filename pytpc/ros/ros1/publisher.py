@@ -72,7 +72,7 @@ class RawPublisher:
         self._host = own_host(os.environ, master.uri)
         self._listener = socket.create_server(("", 0))
         self._on_shutdown = on_shutdown
-        answers = {
+        answers: dict[str, Callable[..., object]] = {
             "requestTopic": self._request,
             "getPublications": self._publications,
             "shutdown": self._shutdown,

@@ -200,8 +200,7 @@ class _Watch:
         while self.look().now_ns == 0 and not self._launched.has_ended_well:
             if time.monotonic() > limit:
                 raise RunError(
-                    f"no /clock for {_CLOCK_PATIENCE_S:.0f} s: where no simulator runs, say"
-                    " --wall-time"
+                    f"no /clock for {_CLOCK_PATIENCE_S:.0f} s: without a simulator, use --wall-time"
                 )
             time.sleep(_POLL_S)
 

@@ -116,7 +116,7 @@ class MasterWatch:
             self._gone = False
         except RunError as error:
             if not self._gone:
-                self._say(f"{error}; what is connected goes on, and the master is waited for")
+                self._say(f"{error}; connected nodes are still heard; waiting for the master")
             self._gone = True
 
 
