@@ -1,4 +1,4 @@
-"""Merges the static information of workspaces and build folders, leaving out what is stale."""
+"""Merges the static information of workspaces and build folders, without stale files."""
 
 from __future__ import annotations
 

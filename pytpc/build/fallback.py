@@ -73,7 +73,7 @@ class LeftAlone:
 
     @property
     def folders(self) -> list[Path]:
-        """The folders of the packages, those that are being tried among them."""
+        """The folders of the packages, including those that are being tried."""
         return [folder for name, folder in self._folders.items() if name in self.reasons]
 
     def can_try(self, error: BuildError) -> bool:

@@ -35,7 +35,7 @@ from pytpc.workspace.packages import Package
 
 _KEPT_FILE = "python.json"
 _PRODUCTS = frozenset({"__pycache__", "node_modules"})
-# What says how a package is called, and which of its files are programs or modules.
+# Files that give a package its name, and say which of its files are programs or modules.
 _DECLARING = frozenset({"package.xml", "setup.cfg", "pyproject.toml", "CMakeLists.txt"})
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ class PythonBuild:
         build_base: with a build folder for each package.
         packages: all of the workspace.
         chosen: the packages that were built.
-        rules: None to analyse nothing, and to forget what was written of ``chosen``.
+        rules: None to analyse nothing, and to forget the units of ``chosen``.
         tests: take scripts in folders of tests, too.
     """
 
@@ -62,10 +62,10 @@ class PythonBuild:
 def python_of_build(
     asked: PythonBuild, taken: Iterable[Name], on_progress: Callable[[int, int], None] | None = None
 ) -> PythonUnits:
-    """Analyse the scripts of ``chosen``; of the other packages take what was written before.
+    """Analyse the scripts of ``chosen``; take those of other packages from an earlier build.
 
-    Where nothing has changed since, what was written of ``chosen`` is taken, too. Each unit is
-    written to its file below ``build_base``, and files of scripts that are no more are removed.
+    If nothing has changed since, the units of ``chosen`` are taken from the earlier build, too. Each
+    unit is written to its file below ``build_base``; files of removed scripts are deleted.
 
     Args:
         asked: which scripts.
@@ -107,7 +107,7 @@ def python_of_build(
 def _others(
     build_base: Path, packages: Iterable[Package], chosen: Iterable[Package], found: PythonUnits
 ) -> Iterator[LinkUnit]:
-    """What stays of packages that were not built; files of scripts that are no more are removed."""
+    """The units of packages that were not built; files of removed scripts are deleted."""
     built = {package.name for package in chosen}
     written = {python_unit_file(build_base / each.package, each.link_unit) for each in found.units}
     for package in packages:

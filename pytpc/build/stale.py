@@ -150,7 +150,7 @@ def drop_repeated(files: Iterable[UnitFile]) -> tuple[list[UnitFile], list[Stale
 
 
 def _identity(unit: LinkUnit) -> tuple[str, str, str | None]:
-    """What two files of one link unit have in common.
+    """The key by which two files of one link unit are recognised.
 
     A script's unit is called after its path where a target has its name, and that may change.
     """

@@ -18,8 +18,8 @@ from pytpc.values.scalars import number_text
 class FileChange:
     """A change of one file by a new value.
 
-    ``path`` is the file itself, behind symbolic links. ``old`` is None where the parameter stood
-    nowhere. ``notes`` are sentences for who applies it.
+    ``path`` is the file to which symbolic links lead. ``old`` is None if no file set the parameter.
+    ``notes`` are sentences for the user.
     """
 
     parameter: str
@@ -116,7 +116,7 @@ def entry_of(journal: Journal, what: str) -> JournalEntry:
 
     Args:
         journal: of the changes.
-        what: its number, a file of which the last change is meant, or empty for the last of all.
+        what: its number; or a file, whose last change is meant; or empty for the last of all.
 
     Raises:
         InputError: there is no such change.

@@ -151,7 +151,7 @@ def _package_of(source: Path) -> Path:
 
 
 def read_cfg(text: bytes, path: Path) -> tuple[list[Declared], list[str]]:
-    """What a file declares, in its order, and what of it is not followed, a line each.
+    """The declarations of a file, in its order, and a line for each that cannot be followed.
 
     Args:
         text: the file.

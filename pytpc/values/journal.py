@@ -99,7 +99,7 @@ class Journal:
         return self._all()[0]
 
     def broken(self) -> list[InputError]:
-        """What is wrong with the entries that cannot be read; the others can still be used."""
+        """The faults of the entries that cannot be read; the others can still be used."""
         return self._all()[1]
 
     def _all(self) -> tuple[list[JournalEntry], list[InputError]]:

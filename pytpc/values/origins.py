@@ -29,10 +29,10 @@ class Origin:
     a YAML file that a launch file loads, the launch file itself (``<param>``), an ``argument`` on
     roslaunch's command line, the default in the code (it is not set), set at ``runtime``.
     ``path`` and ``lineno`` are the place, ``text`` the source line; ``via`` the launch files on the
-    way to it, ``note`` a sentence about what is not certain. ``value`` is as on the server.
+    way to it, ``note`` a sentence about an uncertainty. ``value`` is that of the server.
 
     ``keys`` are the keys in a YAML file from the top, ``argument`` the launch argument whose value
-    this is, ``source`` the file of which ``path`` is an installed copy, ``overridden`` the places
+    this is, ``source`` the file that ``path`` is an installed copy of, ``overridden`` the places
     (``file:line``) that set it before and do not count, ``param_type`` the ``type`` of a
     ``<param>``.
     """

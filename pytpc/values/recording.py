@@ -13,7 +13,7 @@ from pytpc.values.scalars import same_value
 from pytpc.values.trace import Trace, name_on_server, trace_launch
 from pytpc.values.yaml_tree import YamlNode, read_yaml, settings, value_of
 
-# What roslaunch and the master keep for themselves.
+# The parameters of roslaunch and the master themselves.
 OF_ROS = ("/rosdistro", "/rosversion", "/run_id", "/roslaunch", "/tcp_keepalive")
 NO_LAUNCH = "the graph was already running, and no launch file was given"
 BY_A_NODE = (
@@ -45,7 +45,7 @@ def _value(node: YamlNode) -> object:
     try:
         return value_of(node)
     except ValueError:
-        # Binary data and dates: what is written is all that is shown of them.
+        # Binary data and dates are shown as they are written.
         return node.text
 
 
@@ -127,8 +127,7 @@ def save_origins(
         reason: why there is no trace, empty where there is one.
         env: in which the launch file was read.
 
-    What goes wrong is the ``reason`` why no origin is known: the mission was flown.
-
+    An error becomes the ``reason`` why no origin is known: the mission was flown.
     Raises:
         TpcError: the file cannot be written.
     """

@@ -46,7 +46,7 @@ def is_yaml(path: Path) -> bool:
 
 
 def read_target(path: Path, args: Mapping[str, str], env: Mapping[str, str]) -> Target:
-    """What is known of a mission's folder, its bag, or a launch file.
+    """Read the origins and nodes of a mission, given by its folder or bag, or of a launch file.
 
     Args:
         path: of one of them.

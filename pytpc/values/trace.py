@@ -1,4 +1,4 @@
-"""The values that a launch file sets, and which line of which file sets each.
+"""The values that a launch file sets, each with the file and line that sets it.
 
 ``trace_launch`` runs ``pytpc.values.tracer.launch_tracer`` with roslaunch's own Python, and
 ``pytpc.values.origin_places`` turns what that says into places.
@@ -21,7 +21,7 @@ from pytpc.values import launch_tracer_path
 _PATIENCE_S = 60.0
 _SHEBANG_BYTES = 256
 _LONGEST = 600
-# What launch_tracer puts for the random part of $(anon x).
+# The word of launch_tracer for the random part of $(anon x).
 _ANONYMOUS = "__tpc_anon"
 
 
@@ -63,7 +63,7 @@ class Trace:
 
     @property
     def by_roslaunch(self) -> set[str]:
-        """What roslaunch sets before any node runs; nodes set what is in their args themselves."""
+        """The parameters that roslaunch sets before nodes run; nodes set those in their args."""
         return {
             name
             for name, settings in self.settings.items()
@@ -135,7 +135,7 @@ def trace_launch(
                 f"{command[0]} has no roslaunch; install it with: apt-get install python3-roslaunch"
             )
         why = said[-1] if said else "no reason"
-        # Of includes without an end roslaunch names each.
+        # roslaunch names each include of an endless chain.
         why = why if len(why) <= _LONGEST else f"{why[: _LONGEST // 2]} ... {why[-_LONGEST // 2 :]}"
         raise InputError(f"roslaunch cannot read it: {why}", launch)
     answer = json.loads(ran.stdout)

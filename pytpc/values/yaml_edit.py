@@ -92,7 +92,7 @@ def _changed_with(document: Mapping[Keys, YamlSetting], spot: YamlNode) -> list[
 def _notes(
     document: Mapping[Keys, YamlSetting], setting: YamlSetting, spot: YamlNode, force: bool
 ) -> list[str]:
-    """What else to know of a change.
+    """Notes on a change.
 
     Raises:
         Refused: other parameters share the text of the value, and ``force`` is not given.

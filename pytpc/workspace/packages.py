@@ -24,7 +24,7 @@ PRODUCT_MARKERS = frozenset({".built_by", ".catkin", ".colcon_install_layout"})
 class Package:
     """A package: its name, its folder, and the build type of its manifest (``catkin``, ...).
 
-    ``needs`` are the names of the packages without which it is neither built nor run.
+    ``needs`` are the names of the packages that it needs to be built or run.
     """
 
     name: str
@@ -40,7 +40,7 @@ class Package:
 
 @dataclass(frozen=True, slots=True)
 class Manifest:
-    """What a package.xml says: names of other packages, in its order, conditions evaluated.
+    """The contents of a package.xml: names of other packages, in its order, conditions evaluated.
 
     ``build_depends`` are needed to build the package, ``run_depends`` to run it, ``test_depends``
     for its tests.
@@ -54,7 +54,7 @@ class Manifest:
 
     @property
     def needs(self) -> tuple[str, ...]:
-        """What has to be built before it, as colcon and catkin order packages."""
+        """The packages that are built before it, as colcon and catkin order them."""
         return tuple(dict.fromkeys((*self.build_depends, *self.run_depends)))
 
 
@@ -102,9 +102,9 @@ def select_packages(packages: Sequence[Package], names: Iterable[str]) -> list[P
 
 
 def packages_up_to(packages: Sequence[Package], names: Iterable[str]) -> list[Package]:
-    """The packages with these names and what they need of ``packages``; all without a name.
+    """The packages with these names, and those that they need; all if no name is given.
 
-    That is what colcon takes for ``--packages-up-to``; the order is that of ``packages``.
+    colcon selects the same for ``--packages-up-to``. The order is that of ``packages``.
     """
     by_name = {package.name: package for package in packages}
     wanted = [name for name in names if name in by_name] or list(by_name)
@@ -118,10 +118,10 @@ def packages_up_to(packages: Sequence[Package], names: Iterable[str]) -> list[Pa
 
 
 def refuse_cycles(packages: Sequence[Package], workspace: Path) -> None:
-    """See that the packages can be ordered.
+    """Check that the packages can be ordered.
 
     Raises:
-        WorkspaceError: some need one another, with their names in a circle.
+        WorkspaceError: some need one another; with their names in a circle.
     """
     cycle = find_cycle({package.name: package.needs for package in packages})
     if cycle:
@@ -129,7 +129,7 @@ def refuse_cycles(packages: Sequence[Package], workspace: Path) -> None:
 
 
 def find_cycle(needs: Mapping[str, Sequence[str]]) -> list[str]:
-    """Names that need one another in a circle, the first one again at the end; none: empty.
+    """Names that need one another in a circle, the first one again at the end; empty if none do.
 
     Args:
         needs: for each name the names that it needs; those without a row of their own need none.
@@ -182,7 +182,7 @@ def read_list_file(path: Path) -> bytes | None:
 
 
 def check_syntax(data: bytes, path: Path) -> None:
-    """See that CMake can parse the bytes of a list file.
+    """Check that CMake can parse the bytes of a list file.
 
     Raises:
         InputError: it cannot, with the line in ``path``.
@@ -193,7 +193,7 @@ def check_syntax(data: bytes, path: Path) -> None:
 
 
 def package_folders(workspace: Path) -> Iterator[Path]:
-    """The folders with a package.xml, sorted; which are skipped ``find_packages`` says."""
+    """The folders with a package.xml, sorted; ``find_packages`` says which are skipped."""
     seen: set[str] = set()
     for folder, below, files in os.walk(workspace, followlinks=True):
         real = os.path.realpath(folder)
@@ -265,7 +265,7 @@ def read_manifest(folder: Path) -> Manifest:
 
 
 def _names(*lists: Iterable[Any]) -> tuple[str, ...]:
-    """Of catkin_pkg's dependencies those whose condition holds, each once."""
+    """The dependencies of catkin_pkg whose condition holds, each once."""
     return tuple(
         dict.fromkeys(one.name for each in lists for one in each if one.evaluated_condition)
     )

@@ -1,8 +1,7 @@
 """Patching a workspace: TPC's block into every package's CMakeLists.txt, and out again.
 
 All files are read, checked and written beside the old ones before the first is replaced, so that a
-workspace is never half patched. What a file needs to be is worked out in
-``pytpc.workspace.cmake_block``.
+workspace is never half patched. ``pytpc.workspace.cmake_block`` edits the bytes of a file.
 
 A run that was killed between two files leaves the first ones patched; the next run does the others
 and removes what the killed one had written beside them.
@@ -42,7 +41,7 @@ _LIST_FILE = "CMakeLists.txt"
 
 @dataclass(frozen=True, slots=True)
 class ListFileChange:
-    """What a patch does to one file.
+    """The change of one CMakeLists.txt.
 
     ``path`` is the place within the workspace, ``real`` the file behind its symbolic links.
     """

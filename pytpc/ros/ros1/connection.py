@@ -51,7 +51,7 @@ def sized(data: bytes) -> bytes:
 
 
 def receive(connection: socket.socket, count: int) -> bytes:
-    """Exactly so many bytes.
+    """Receive exactly ``count`` bytes.
 
     Raises:
         OSError: the other side closes the connection before, or is too slow.
@@ -66,7 +66,7 @@ def receive(connection: socket.socket, count: int) -> bytes:
 
 
 def receive_sized(connection: socket.socket, largest: int) -> bytes:
-    """The bytes behind their length.
+    """Receive a length, and as many bytes.
 
     Raises:
         OSError: as ``receive``.
@@ -92,7 +92,7 @@ def receive_header(connection: socket.socket, largest: int = _LARGEST_HEADER) ->
 
 
 class ServiceType(NamedTuple):
-    """What a server compares before it takes a request."""
+    """The name and checksum that a server compares before it takes a request."""
 
     name: str
     md5sum: str
@@ -105,7 +105,7 @@ def call_service(uri: str, service: str, kind: ServiceType, request: bytes, call
 
     Raises:
         OSError: nobody is there, or does not answer in time.
-        ValueError: what is there does not speak the protocol, or refuses.
+        ValueError: the server does not speak the protocol, or refuses.
     """
     place = urlsplit(uri)
     if place.hostname is None or place.port is None:

@@ -1,4 +1,4 @@
-"""A real ROS 1 graph of its own: a master on a free port, rosout, and what is started in it.
+"""A real ROS 1 graph: a master on a free port, rosout, and the processes that are started in it.
 
 Everything that a graph starts is ended with it, the children of its children too: roslaunch puts
 each node into a session of its own, so a graph knows its processes by a word in their environment.
@@ -55,7 +55,7 @@ class GraphProcess:
         return is_over and _REQUIRED_DIED.search(self._end_of_log()) is None
 
     def tail(self, lines: int = 3) -> list[str]:
-        """The last lines of its output, without colours; those that tell of an error first."""
+        """The last lines of its output, without colours; lines about errors if there are any."""
         # roslaunch underlines with equals signs, some of them on the line itself.
         said = [line.strip("= \t") for line in self._end_of_log().splitlines()]
         said = [line for line in said if line]
@@ -169,7 +169,7 @@ class RosGraph:
         return process
 
     def check(self) -> None:
-        """See that all processes still run, but those that may end.
+        """Check that all processes still run, except those that may end.
 
         Raises:
             RunError: one has ended; the message has its status and what it said last.

@@ -31,7 +31,7 @@ _LISTED = 5
 
 @dataclass(frozen=True, slots=True)
 class NodeStatus:
-    """What a node answers: ``message`` as it came, ``values`` its words ``name=value``.
+    """The answer of a node: ``message`` as it came, ``values`` its words ``name=value``.
 
     ``success`` is false where the node did not take something over, or did not answer; then
     ``message`` says what.
@@ -100,7 +100,7 @@ class InstrumentedNodes:
 
 
 def chosen(running: Sequence[str], named: Iterable[str]) -> list[str]:
-    """The nodes that are meant: those that are named, all where none is.
+    """The nodes that a user names; all if no name is given.
 
     Raises:
         RunError: one of them is not running, or none is.

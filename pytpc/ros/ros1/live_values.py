@@ -36,7 +36,7 @@ _PARTS: Mapping[str, str] = {"bool": "<?", "int": "<i", "string": "", "double": 
 class LiveChange:
     """A value that is set on a running robot.
 
-    ``old`` is None where nothing stood there. ``service`` is that of dynamic_reconfigure, empty
+    ``old`` is None if it was not set. ``service`` is that of dynamic_reconfigure, empty
     where the node has none. ``nodes`` run in whose namespace the name is.
     """
 
@@ -114,7 +114,7 @@ class Robot:
         return self._put(change.name, change.new, change.service)
 
     def take_back(self, name: str, old: object, service: str) -> None:
-        """Set what stood there before; where nothing did, the parameter is deleted.
+        """Set the value of before; if there was none, delete the parameter.
 
         Raises:
             RunError: the master or the node does not answer, or refuses.
@@ -146,11 +146,11 @@ def set_live(
     """Set a value on the running robot and record it.
 
     Returns:
-        The note; the value that holds then; whether the node has taken it over by itself.
+        The entry of the journal; the value that holds then; whether the node has taken it at once.
 
     Raises:
-        RunError: the robot does not take it.
-        TpcError: it cannot be noted; then nothing is set.
+        RunError: the robot refuses it.
+        TpcError: it cannot be recorded; then nothing is set.
     """
     live = {
         "master": change.master,
@@ -177,7 +177,7 @@ def take_back_live(
     """Undo a change of the running robot and forget it.
 
     Raises:
-        TpcError: the value was changed since, or the robot does not take it.
+        TpcError: the value was changed since, or the robot refuses it.
     """
     live = entry.live
     name, old, new = str(live["name"]), from_json(live["old"]), from_json(live["new"])
@@ -199,7 +199,7 @@ def _reconfigure(uri: str, service: str, name: str, value: object, caller: str) 
 
     Raises:
         OSError: nobody is there, or does not answer in time.
-        ValueError: what is there does not speak the protocol, or refuses.
+        ValueError: the server does not speak the protocol, or refuses.
     """
     request = _encode_config(name, value)
     return _decode_config(call_service(uri, service, _RECONFIGURE, request, caller)).get(name)

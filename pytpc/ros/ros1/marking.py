@@ -86,7 +86,7 @@ class GraphMarks:
         return False
 
     def view(self) -> View:
-        """What is shown of the graph."""
+        """The title and state of the connection, and the time."""
         now_ns = self.now_ns()
         if now_ns is not None and (self._start_ns is None or now_ns < self._start_ns):
             self._start_ns = now_ns

@@ -69,7 +69,7 @@ def call(uri: str, method: str, *arguments: object) -> object:
 
 
 def reason_of(error: Exception) -> str:
-    """What one of ``CALL_ERRORS`` says, in a few words."""
+    """The message of one of ``CALL_ERRORS``, in a few words."""
     if isinstance(error, xmlrpc.client.Fault):
         return error.faultString
     if isinstance(error, OSError) and error.strerror:

@@ -27,7 +27,7 @@ _PATIENCE_S = 2.0
 
 @dataclass(frozen=True, slots=True)
 class MessageType:
-    """What a subscriber wants to know of a topic's messages."""
+    """The type of a topic's messages, as a subscriber asks for it."""
 
     name: str
     md5sum: str
@@ -98,7 +98,7 @@ class RawPublisher:
         return self._master.node_uri(self._master.caller) == self._server.uri
 
     def publish(self, topic: str, message: bytes) -> int:
-        """Send to all who listen now; their number. One who does not take it is left out."""
+        """Send to all who listen now, and return their number; one who is too slow is dropped."""
         sent = 0
         data = sized(message)
         with self._lock:

@@ -98,7 +98,7 @@ def run_mission(
         started = graph.start("roslaunch", command, patience_s=_LAUNCH_PATIENCE_S, may_end=True)
         watch = _Watch(graph, started, out_dir, began, options.on_progress)
         watch.wait_for_parameters(trace)
-        # Without it less is known of where values came from, and that is all.
+        # Without it only less is known about the origins of values.
         with contextlib.suppress(RunError):
             dump_params(graph.env, out_dir / START_FILE)
         if use_sim_time:
@@ -158,7 +158,7 @@ def _start_recorder(graph: RosGraph, options: RecordOptions) -> GraphProcess:
 
 
 class _Watch:
-    """Looks at a running mission from the side."""
+    """Watches a running mission."""
 
     def __init__(
         self,
@@ -182,7 +182,7 @@ class _Watch:
         return status
 
     def wait_for_parameters(self, trace: Trace | None) -> None:
-        """Until roslaunch has set what the launch file sets, which it does before any node runs."""
+        """Wait until roslaunch has set the parameters; it does so before any node runs."""
         wanted = set() if trace is None else trace.by_roslaunch
         limit = time.monotonic() + _SET_PATIENCE_S
         while time.monotonic() < limit and not self._launched.has_ended_well:
@@ -227,7 +227,7 @@ def _stands(name: str, known: set[str]) -> bool:
 
 
 def dump_params(env: Mapping[str, str], path: Path) -> None:
-    """Write what stands on the parameter server.
+    """Write the values of the parameter server.
 
     Raises:
         RunError: rosparam is not there, or fails.
@@ -326,7 +326,7 @@ class _Beginning(threading.Thread):
             self._found = try_trace(self._env, self._launch, self._args)
 
     def ended(self) -> tuple[Trace | None, str]:
-        """What the launch file sets, or why that is not known; waits for it, within limits."""
+        """Wait for the launch file to be read; its values, or why they are not known."""
         self.join(2 * MISSION_PATIENCE_S)
         if self._launch is None:
             return None, NO_LAUNCH
@@ -334,7 +334,7 @@ class _Beginning(threading.Thread):
 
 
 def _try_dump(env: Mapping[str, str], path: Path) -> None:
-    """Write what stands on the parameter server, or nothing.
+    """Write the values of the parameter server, or nothing.
 
     The master may be gone, or rosparam not be installed, and the bag is what matters.
     """

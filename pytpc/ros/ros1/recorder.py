@@ -1,8 +1,8 @@
 """Records topics of a ROS 1 graph into a bag without losing any message; a program of its own.
 
-All reports of all nodes go through one topic, thousands in a second. Nothing is dropped here: what
-is not yet read waits in the publishers, whose queues for /rosout have no end. Each node numbers
-its messages on /rosout, so a loss would be seen and is counted.
+All reports of all nodes go through one topic, thousands in a second. Nothing is dropped here:
+unread messages wait in the publishers, whose queues for /rosout have no end. Each node numbers its
+messages on /rosout, so each loss is counted.
 
 It runs below ``pytpc.ros.ros1.record_mission``, which reads the status file that it keeps.
 """
@@ -91,7 +91,7 @@ class Recorder:
             self._done_ns = self.now_ns()
 
     def put_early(self) -> None:
-        """Put what waits for the first /clock into the bag; to be called before it is closed.
+        """Put the messages that wait for the first /clock into the bag; call it before closing.
 
         A clock may begin at any time. Messages from before it get its first time, as if they had
         come with it: at 0 they would make the mission as long as the clock's first time.
@@ -118,8 +118,7 @@ class Recorder:
 class Discovery:
     """Finds the topics of observers as they appear, and a master that has forgotten this node.
 
-    The master is asked once a second. One that does not answer is waited for: what is connected
-    goes on without it.
+    The master is asked once a second. If it does not answer, connected nodes are still recorded.
     """
 
     def __init__(
@@ -198,7 +197,7 @@ class GraphRecorder:
         self._discovery = Discovery(self._subscriber, self._recorder, subscribed)
 
     def step(self) -> RecorderStatus:
-        """Take what has come, wait a moment for more; the account.
+        """Take the messages that have come, wait a moment for more, and return the account.
 
         Raises:
             ValueError: see ``strict``.
@@ -208,7 +207,7 @@ class GraphRecorder:
         return self._recorder.status()
 
     def finish(self) -> RecorderStatus:
-        """Take what is still on the way, leave the graph and close the bag.
+        """Take the messages that are still on the way, leave the graph and close the bag.
 
         Raises:
             ValueError: see ``strict``.

@@ -78,7 +78,7 @@ class Relay:
             self.passed_on += 1
 
     def account(self) -> str:
-        """What was done, in one sentence without a full stop."""
+        """How many reports were passed on, in one sentence without a full stop."""
         text = f"{many(self.passed_on, 'report')} passed on"
         if self.lost:
             text += f", {many(self.lost, 'log message')} never came"
@@ -88,7 +88,7 @@ class Relay:
 
 
 class MasterWatch:
-    """Sees that the master went and came back, and registers again then.
+    """Notices that the master went and came back, and registers again.
 
     Args:
         is_known: asks the master whether it knows this node; raises RunError where it does not
@@ -121,11 +121,11 @@ class MasterWatch:
 
 
 def run(arguments: Sequence[str], say: Say) -> None:
-    """Be the node until SIGINT, SIGTERM or the graph ends it.
+    """Relay reports until SIGINT, SIGTERM or the graph ends this node.
 
     Args:
-        arguments: ROS's remappings, as ``__name:=other``; anything else is passed over.
-        say: gets what a user should know, a sentence each.
+        arguments: remappings of ROS, as ``__name:=other``; others are ignored.
+        say: called with each sentence for the user.
 
     Raises:
         RunError: the master does not answer at the start.
@@ -167,7 +167,7 @@ def _serve(
         for source, data in subscriber.poll(_POLL_S):
             relay.take(data, source.node)
     over.set()
-    # What is still on the way.
+    # Messages that are still on the way.
     until = time.monotonic() + 1.0
     while time.monotonic() < until:
         waiting = list(subscriber.poll(0.05))

@@ -3,7 +3,7 @@
 For a recorder that must not lose a message neither rosbag's recorder nor rospy will do: the first
 drops what does not fit into 100 places, and of the second, when many nodes start at once, two
 threads connect to one publisher, which then drops one connection a second later, with what was in
-it. Here each publisher of a topic has one connection, and what is not yet read waits in it.
+it. Here each publisher of a topic has one connection, in which unread messages wait.
 
 The protocols: http://wiki.ros.org/ROS/Slave_API, http://wiki.ros.org/ROS/TCPROS.
 """
@@ -46,7 +46,7 @@ class Source:
 
 
 class Frames:
-    """Cuts a stream of bytes into messages, each of which stands after its length."""
+    """Cuts a stream of bytes into messages; each comes after its length."""
 
     def __init__(self) -> None:
         self._buffer = bytearray()
@@ -114,7 +114,7 @@ class RawSubscriber:
             raise
 
     def subscribe(self, topic: str) -> None:
-        """Subscribe to a further topic; or to one again, of which the master does not know.
+        """Subscribe to a further topic, or again to one that the master has forgotten.
 
         Raises:
             RunError: the master does not answer or refuses.
@@ -134,7 +134,7 @@ class RawSubscriber:
             self.subscribe(topic)
 
     def poll(self, timeout_s: float) -> Iterator[tuple[Source, bytes]]:
-        """Wait for messages and give those that came; none after ``timeout_s`` without any."""
+        """Wait for messages and yield those that came; none after ``timeout_s`` without any."""
         for key, _ in self._selector.select(timeout_s):
             if key.data is None:
                 self._wake_receive.recv(4096)
@@ -180,7 +180,7 @@ class RawSubscriber:
         return 0
 
     def _on_publishers(self, topic: str, publishers: Sequence[str]) -> None:
-        """The publishers of a topic are these now; connect to those that are new."""
+        """Connect to the new ones among the publishers that a topic has now."""
         with self._lock:
             if topic not in self._wanted:
                 return

@@ -1,4 +1,4 @@
-"""What would keep a build with TPC from working, found before it is started.
+"""Finds what would keep a build with TPC from working, before it is started.
 
 ``machine`` checks what ``look`` has seen of the machine; ``workspace`` looks at a workspace and
 checks it.

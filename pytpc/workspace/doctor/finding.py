@@ -1,4 +1,4 @@
-"""What a check finds."""
+"""A problem that a check found, and how bad it is."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from functools import partial
 
 
 class Severity(Enum):
-    """How bad it is; the order is that of the members."""
+    """How bad a problem is, the worst first."""
 
     ERROR = "error"  # a build does not work
     WARNING = "warning"  # it works, with less than could be

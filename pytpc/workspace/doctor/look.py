@@ -54,10 +54,10 @@ print(json.dumps({"modules": modules, "colcon": extensions}))
 
 
 def look_at_machine(folder: Path) -> Machine:
-    """What is there now.
+    """See what this machine has.
 
     Args:
-        folder: of whose disk the space is wanted; the nearest one upward that there is.
+        folder: the free space of its disk is checked; it need not exist.
     """
     programs = {
         name: Program(Path(path), version_of(output_of([path, "--version"])))
@@ -91,7 +91,7 @@ def look_at_machine(folder: Path) -> Machine:
 
 
 def version_of(said: str) -> tuple[int, ...]:
-    """The first dotted number in what a program says of itself; empty where there is none."""
+    """The first dotted number in the output of ``--version``; empty if there is none."""
     found = re.search(r"\b(\d+(?:\.\d+)+)", said)
     return tuple(map(int, found[1].split("."))) if found else ()
 

@@ -42,7 +42,7 @@ class Program:
 
 @dataclass(frozen=True, slots=True)
 class Machine:
-    """What was seen of the machine.
+    """What ``look_at_machine`` saw.
 
     ``programs`` by name; ``python`` is the first python3 on the caller's PATH, ``modules`` the
     versions of what /usr/bin/python3 can import, ``extensions`` those of colcon that it has;

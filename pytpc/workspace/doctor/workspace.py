@@ -31,13 +31,13 @@ from pytpc.workspace.packages import (
 _COMMENTS = (Kind.LINE_COMMENT, Kind.BRACKET_COMMENT)
 _CMAKE_BUILD_TYPES = ("catkin", "cmake", "ament_cmake")
 
-# Clang itself, or what CMake takes of itself: there tpc.cmake puts clang in its place.
+# clang, or CMake's own choice, which tpc.cmake replaces by clang.
 _REPLACED = re.compile(r"clang(\+\+)?-19$|(^|/)c(c|\+\+)$")
 
 
 _CACHE = "CMakeCache.txt"
 _CACHE_LINE = re.compile(r"^(\w+):\w+=(.*)$", re.MULTILINE)
-# The deepest is that of a package in the workspace's own: .tpc, build, package.
+# The deepest build folder is .tpc/build/PACKAGE.
 _BUILD_DEPTH = 3
 _ODD_NAMES = 20
 
@@ -68,7 +68,7 @@ class BuildFolder:
 
 @dataclass(frozen=True, slots=True)
 class SeenWorkspace:
-    """What was seen of a workspace; ``odd_names`` are files whose names are not UTF-8."""
+    """What ``look_at_workspace`` saw; ``odd_names`` are files whose names are not UTF-8."""
 
     folder: Path
     packages: Sequence[SeenPackage]
@@ -79,7 +79,7 @@ class SeenWorkspace:
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """What there is outside of the workspace.
+    """The packages and builds that TPC knows outside of the workspace.
 
     ``packages`` have a package.xml in a prefix that CMake looks in; ``debian`` are the packages
     that apt offers, ``installed`` those that dpkg has.
@@ -93,7 +93,7 @@ class Known:
 
 
 def look_at_workspace(workspace: Path) -> SeenWorkspace:
-    """What is there now.
+    """See which packages and build folders a workspace has.
 
     Raises:
         WorkspaceError: no such folder.
@@ -112,7 +112,7 @@ def look_at_workspace(workspace: Path) -> SeenWorkspace:
 
 
 def look_at_known(workspace: Path) -> Known:
-    """What there is outside of a workspace: in CMake's prefixes, and by apt and dpkg."""
+    """See which packages CMake's prefixes, apt and dpkg have."""
     prefixes = [*sourced_prefixes(), *ROS_PREFIXES]
     shares = [path for one in prefixes for path in (one / "share").glob(f"*/{MANIFEST}")]
     installed = output_of(["dpkg-query", "-W", "-f", "${Package} ${db:Status-Status}\n"])
@@ -128,7 +128,7 @@ def look_at_known(workspace: Path) -> Known:
 
 
 def read_cache(text: str, folder: Path) -> BuildFolder:
-    """What a CMakeCache.txt says of its build folder."""
+    """Read the build folder's settings from its CMakeCache.txt."""
     values = dict(_CACHE_LINE.findall(text))
     return BuildFolder(
         folder,
@@ -205,7 +205,7 @@ def check_workspace(seen: SeenWorkspace, known: Known) -> list[Finding]:
 
 
 def debian_names(name: str, *, distribution: str | None = None) -> list[str]:
-    """What Debian, or the archive of a ROS distribution, may call a package; the likeliest first.
+    """The names that Debian or a ROS distribution may have for a package; the likeliest first.
 
     Debian has roscpp as libroscpp-dev, rospy as python3-rospy, message_generation as
     ros-message-generation, catkin as catkin.
