@@ -29,6 +29,7 @@ from pytpc.build.python_units import (
 )
 from pytpc.build.reconcile import target_names
 from pytpc.python_analysis.rules_file import Rules
+from pytpc.python_analysis.sources.scripts import is_python
 from pytpc.static.link_unit import LeftOut, LinkUnit
 from pytpc.static.static_info import is_python_file, load_link_unit, python_unit_file, unit_files
 from pytpc.workspace.packages import Package
@@ -206,15 +207,5 @@ def _read_files(root: Path) -> Iterator[Path]:
         below[:] = sorted(name for name in below if name not in _PRODUCTS and name[0] != ".")
         for name in sorted(files):
             path = Path(folder, name)
-            if name in _DECLARING or path.suffix == ".py" or _is_script(path):
+            if name in _DECLARING or is_python(path):
                 yield path
-
-
-def _is_script(path: Path) -> bool:
-    try:
-        if not path.is_file():
-            return False
-        with path.open("rb") as stream:
-            return b"#!" in stream.read(8)
-    except OSError:
-        return False

@@ -15,8 +15,7 @@ from pytpc.base.checked_json import check_rules
 from pytpc.base.paths import cmake_file, prefix
 from pytpc.base.wording import many, plain
 from pytpc.workspace.doctor.finding import Finding, Severity, by_severity
-from pytpc.workspace.doctor.look import look_at_machine
-from pytpc.workspace.doctor.machine import check_machine
+from pytpc.workspace.doctor.machine import check_machine, look_at_machine
 from pytpc.workspace.doctor.workspace import (
     check_workspace,
     look_at_known,

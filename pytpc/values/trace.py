@@ -16,8 +16,9 @@ from pathlib import Path
 from typing import Any
 
 from pytpc.base.errors import InputError, MissingToolError, RunError
-from pytpc.values import launch_tracer_path
 
+# It runs with roslaunch's Python, so it is not imported.
+_TRACER = Path(__file__).with_name("tracer") / "launch_tracer.py"
 _PATIENCE_S = 60.0
 _SHEBANG_BYTES = 256
 _LONGEST = 600
@@ -116,7 +117,7 @@ def trace_launch(
     if not launch.is_file():
         raise InputError("no such launch file", launch)
     given = [f"{name}:={value}" for name, value in sorted(args.items())]
-    command = [roslaunch_python(env), str(launch_tracer_path()), str(launch.absolute()), *given]
+    command = [roslaunch_python(env), str(_TRACER), str(launch.absolute()), *given]
     try:
         ran = subprocess.run(
             command,

@@ -17,8 +17,7 @@ from pytpc.base.paths import OWN_FOLDER, ROS_PREFIXES, prefix, sourced_prefixes
 from pytpc.workspace.cmake_block import patch_text, restore_text
 from pytpc.workspace.cmake_syntax import UTF8_BOM, Kind, commands, find_fault, tokens
 from pytpc.workspace.doctor.finding import Finding, error, note, warning
-from pytpc.workspace.doctor.look import output_of
-from pytpc.workspace.doctor.machine import UNSUITED
+from pytpc.workspace.doctor.machine import UNSUITED, output_of
 from pytpc.workspace.packages import (
     MANIFEST,
     Manifest,
