@@ -10,7 +10,7 @@ from pathlib import Path
 from pytpc.build.build import installed, workspace_env
 from pytpc.python_runtime.config import NAMES
 from pytpc.ros.mission_run import DEFAULT_TOPICS, MissionRun, Progress, RecordOptions
-from pytpc.ros.python_env import mission_env
+from pytpc.ros.node_start import mission_env
 from pytpc.ros.ros1.record_mission import record_graph, run_mission
 from pytpc.workspace.colcon import Bases
 

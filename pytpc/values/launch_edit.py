@@ -198,7 +198,10 @@ def _edit_attribute(data: bytes, tag: Tag, attribute: Attribute, given: NewText)
             )
         notes.append(f"{old_text} is replaced by a value")
         old: object = old_text
-        new = _typed(text, kind)
+        try:
+            new = launch_value(text, kind)
+        except ValueError as error:
+            raise Refused(f"{text!r} does not fit the parameter's type: {error}") from error
     else:
         try:
             old = launch_value(old_text, kind)
@@ -225,13 +228,6 @@ def _check(data: bytes, result: bytes, place: tuple[int, str], text: str) -> Non
     found = [{name: one.value for name, one in tag.attributes.items()} for tag in after]
     if found != wanted or [tag.name for tag in before] != [tag.name for tag in after]:
         raise Refused("it cannot be written without changing other values")
-
-
-def _typed(given: str, kind: str) -> object:
-    try:
-        return launch_value(given, kind)
-    except ValueError as error:
-        raise Refused(f"{given!r} does not fit the parameter's type: {error}") from error
 
 
 def _names(tag: Tag, name: str) -> bool:

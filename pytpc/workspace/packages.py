@@ -73,7 +73,10 @@ def find_packages(workspace: Path) -> list[Package]:
     """
     if not workspace.is_dir():
         raise WorkspaceError("no such folder", workspace)
-    packages = [_read_package(folder) for folder in package_folders(workspace)]
+    packages = []
+    for folder in package_folders(workspace):
+        manifest = read_manifest(folder)
+        packages.append(Package(manifest.name, folder, manifest.build_type, manifest.needs))
     if not packages:
         raise WorkspaceError(f"no packages here: no {MANIFEST} in this folder or below", workspace)
     by_name: dict[str, Package] = {}
@@ -213,11 +216,6 @@ def _is_searched(folder: Path) -> bool:
     if folder.name.startswith("."):
         return False
     return folder.name not in PRODUCTS or (folder / MANIFEST).is_file()
-
-
-def _read_package(folder: Path) -> Package:
-    manifest = read_manifest(folder)
-    return Package(manifest.name, folder, manifest.build_type, manifest.needs)
 
 
 def read_manifest(folder: Path) -> Manifest:

@@ -186,7 +186,7 @@ def test_a_note_that_is_broken_keeps_no_other_from_being_taken_back(
 @pytest.mark.parametrize(("now", "kept"), [(0.5, 0), (0.7, 1)])
 def test_the_robot_took_it_and_its_answer_was_lost(tmp_path: Path, now: float, kept: int) -> None:
     class Lost(Robot):
-        def put(self, change: LiveChange) -> tuple[object, bool]:
+        def put(self, name: str, value: object, service: str) -> tuple[object, bool]:
             raise RunError("no answer")
 
         def value(self, name: str) -> object:

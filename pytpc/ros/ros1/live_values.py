@@ -100,19 +100,6 @@ class Robot:
         taken_by = service if service in state.services else ""
         return LiveChange(self._master.uri, name, old, new, taken_by, below)
 
-    def put(self, change: LiveChange) -> tuple[object, bool]:
-        """Set the new value.
-
-        A node with dynamic_reconfigure is asked first, for it writes its own values to the server.
-
-        Returns:
-            The value that holds then, and whether the node has taken it over by itself.
-
-        Raises:
-            RunError: the master or the node does not answer, or refuses.
-        """
-        return self._put(change.name, change.new, change.service)
-
     def take_back(self, name: str, old: object, service: str) -> None:
         """Set the value of before; if there was none, delete the parameter.
 
@@ -120,11 +107,21 @@ class Robot:
             RunError: the master or the node does not answer, or refuses.
         """
         if old is not None:
-            self._put(name, old, service)
+            self.put(name, old, service)
         elif self.value(name) is not None:
             self._master.call("deleteParam", name)
 
-    def _put(self, name: str, value: object, service: str) -> tuple[object, bool]:
+    def put(self, name: str, value: object, service: str) -> tuple[object, bool]:
+        """Set a value.
+
+        A node with dynamic_reconfigure is asked first, for it writes its own values to the server.
+
+        Returns:
+            The value that holds then, and whether the node has taken it at once.
+
+        Raises:
+            RunError: the master or the node does not answer, or refuses.
+        """
         # None: the node has ended meanwhile, and the next one reads the server.
         uri = self._master.service_uri(service) if service else None
         if uri is not None:
@@ -161,7 +158,7 @@ def set_live(
     }
     entry = journal.add_live(change.name, (shown(change.old), shown(change.new)), live)
     try:
-        holds, taken = robot.put(change)
+        holds, taken = robot.put(change.name, change.new, change.service)
     except BaseException:
         # The node may have taken it all the same, and only its answer did not come.
         with contextlib.suppress(TpcError):
