@@ -10,6 +10,7 @@ from pathlib import Path
 from pytpc.base.atomic import replace_file
 from pytpc.base.diff import unified_diff
 from pytpc.base.errors import InputError, TpcError
+from pytpc.base.source_bytes import read_bytes
 from pytpc.values.journal import Journal, JournalEntry, digest
 from pytpc.values.scalars import number_text
 
@@ -30,18 +31,6 @@ class FileChange:
     new: object
     lineno: int
     notes: tuple[str, ...] = ()
-
-
-def read_file(path: Path) -> bytes:
-    """Read the bytes of a file that will be changed.
-
-    Raises:
-        InputError: it cannot be read.
-    """
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror}", path) from error
 
 
 def decoded(data: bytes, path: Path) -> str:
@@ -78,7 +67,7 @@ def apply_change(change: FileChange, journal: Journal) -> JournalEntry:
             it was.
     """
     with journal.held():
-        if read_file(change.path) != change.before:
+        if read_bytes(change.path) != change.before:
             raise TpcError("the file has changed meanwhile; run the command again", change.path)
         values = shown(change.old), shown(change.new)
         entry = journal.add_file(change.parameter, values, change.path, change.before, change.after)
@@ -99,7 +88,7 @@ def undo_change(entry: JournalEntry, journal: Journal) -> FileChange:
     path, before = entry.path, entry.before
     assert path is not None, "a change of a file"
     assert before is not None, "a change of a file"
-    now = read_file(path)
+    now = read_bytes(path)
     later = [e for e in journal.entries() if e.path == path and e.number > entry.number]
     if later:
         raise TpcError(f"change {later[-1].number} came later; undo that first", path)

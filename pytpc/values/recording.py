@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from pytpc.base.errors import InputError, TpcError
+from pytpc.base.source_bytes import read_bytes
 from pytpc.values.origin_places import Places
 from pytpc.values.origins import ORIGINS_FILE, START_FILE, Origin, write_origins
 from pytpc.values.scalars import same_value
@@ -31,10 +32,7 @@ def read_parameters(path: Path) -> dict[str, object]:
         InputError: it cannot be read, or is not such a dump.
     """
     try:
-        text = path.read_text(encoding="utf-8")
-        documents = read_yaml(text)
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror}", path) from error
+        documents = read_yaml(read_bytes(path).decode())
     except ValueError as error:
         raise InputError(str(error), path) from error
     found = settings(documents[0]) if documents else {}

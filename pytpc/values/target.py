@@ -8,8 +8,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from pytpc.base.errors import InputError
+from pytpc.base.source_bytes import read_bytes
 from pytpc.static.parameters import same_parameter
-from pytpc.values.apply import FileChange, decoded, read_file
+from pytpc.values.apply import FileChange, decoded
 from pytpc.values.installed import is_installed, of_the_system, source_of
 from pytpc.values.journal import digest
 from pytpc.values.launch_edit import NewText, add_param, edit_argument, edit_inline, edit_param
@@ -130,7 +131,7 @@ def plan_yaml(path: Path, parameter: str, given: str, *, force: bool = False) ->
         InputError: the file cannot be read, or the change is refused; with the line.
     """
     real = path.resolve()
-    data = read_file(real)
+    data = read_bytes(real)
     text = decoded(data, path)
     try:
         wanted = parameter.strip("~/")
@@ -180,7 +181,7 @@ def plan_origin(
             file,
         )
     real = file.resolve()
-    data = read_file(real)
+    data = read_bytes(real)
     try:
         if origin.kind == "yaml":
             edit = edit_yaml(decoded(data, file), origin.keys, given, force=force)
@@ -236,7 +237,7 @@ def plan_addition(origin: Origin, target: Target, given: str, default: object = 
         raise InputError("the launch file is not known; give that instead of the mission")
     file = source_of(path) or path
     real = file.resolve()
-    data = read_file(real)
+    data = read_bytes(real)
     known = origin.value if origin.value is not None else default
     try:
         value = guessed(given) if known is None else read_value(given, type_of(known))

@@ -11,6 +11,7 @@ from typing import Any
 from xml.parsers import expat
 
 from pytpc.base.errors import InputError, MissingToolError, WorkspaceError
+from pytpc.base.source_bytes import read_bytes
 from pytpc.workspace.cmake_syntax import find_fault
 
 MANIFEST = "package.xml"
@@ -232,14 +233,12 @@ def read_manifest(folder: Path) -> Manifest:
             "catkin_pkg is not installed; run: apt-get install python3-catkin-pkg"
         ) from error
     path = folder / MANIFEST
+    raw = read_bytes(path)
     try:
-        raw = path.read_bytes()
         expat.ParserCreate().Parse(raw, True)
         manifest = parse_package_string(raw, filename=str(path), warnings=[])
         manifest.evaluate_conditions({"ROS_VERSION": "1", **os.environ})
         build_type = manifest.get_build_type()
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror}", path) from error
     except expat.ExpatError as error:
         what = expat.ErrorString(error.code)
         raise InputError(
