@@ -20,8 +20,9 @@ from rich.progress import track
 
 from pytpc.base.errors import WorkspaceError
 from pytpc.base.paths import project_root
+from pytpc.workspace.cmake_block import patch_text, restore_text
 from pytpc.workspace.cmake_syntax import find_fault
-from pytpc.workspace.patch import apply_changes, calls_project, patch_text, plan_tree, restore_text
+from pytpc.workspace.patch import apply_changes, calls_project, plan_tree
 
 INCLUDED = "/opt/tpc/share/tpc/cmake/tpc.cmake"
 ROOTS = ("/usr/share", "/usr/lib", "/opt", str(project_root()))

@@ -16,7 +16,7 @@ from pytpc.ingest.reading import read as read_recording
 from pytpc.recording.declaration import Declared
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo, read_static
-from pytpc.values.declared_files import declared_in
+from pytpc.values.declared import declared_in
 
 Source = str | os.PathLike[str]
 Progress = Callable[[int, int], None]

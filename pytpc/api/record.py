@@ -9,9 +9,9 @@ from pathlib import Path
 from pytpc.build.build import installed, workspace_env
 from pytpc.python_runtime.config import NAMES
 from pytpc.ros.mission_run import DEFAULT_TOPICS, MissionRun, Progress, RecordOptions
-from pytpc.ros.python_env import mission_env
-from pytpc.ros.ros1.launch_mission import run_mission
-from pytpc.ros.ros1.record_graph import record_graph as record_running
+from pytpc.ros.node_start import mission_env
+from pytpc.ros.ros1.record_mission import record_graph as record_running
+from pytpc.ros.ros1.record_mission import run_mission
 from pytpc.workspace.colcon import Bases
 
 __all__ = ["DEFAULT_TOPICS", "MissionRun", "Progress", "RecordOptions"]
@@ -34,7 +34,7 @@ def record_launch(
 
     Raises:
         WorkspaceError: the workspace is not built.
-        RunError: see `pytpc.ros.ros1.launch_mission.run_mission`.
+        RunError: see `pytpc.ros.ros1.record_mission.run_mission`.
     """
     env = {**workspace_env(installed(workspace)), **sink_settings(os.environ)}
     if python:

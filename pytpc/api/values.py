@@ -9,10 +9,9 @@ from pathlib import Path
 
 from pytpc.base.errors import InputError
 from pytpc.build.build import installed, workspace_env
-from pytpc.ros.live_change import set_live, take_back_live
-from pytpc.ros.ros1.live_values import LiveChange, Robot
+from pytpc.ros.ros1.live_values import LiveChange, Robot, set_live, take_back_live
 from pytpc.ros.ros1.master import uri_of
-from pytpc.values.apply import FileChange, apply_change
+from pytpc.values.apply import FileChange, apply_change, entry_of, take_back_file
 from pytpc.values.journal import Journal, JournalEntry, folder_of
 from pytpc.values.origins import Origin
 from pytpc.values.target import (
@@ -24,7 +23,6 @@ from pytpc.values.target import (
     plan_yaml,
     read_target,
 )
-from pytpc.values.undo import entry_of, take_back_file
 
 __all__ = ["FileChange", "Journal", "JournalEntry", "LiveChange", "LiveSetting", "Origin", "Place"]
 __all__ += ["apply", "apply_live", "is_yaml", "journal", "origins", "plan", "undo"]

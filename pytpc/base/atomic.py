@@ -6,6 +6,7 @@ import contextlib
 import os
 import re
 import secrets
+import stat
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -40,6 +41,25 @@ def stage_beside(target: Path, data: bytes, mode: int = 0o644) -> Path:
     return staged
 
 
+def stage_like(target: Path, data: bytes) -> Path:
+    """``stage_beside``, with the permissions of ``target`` and, where permitted, its owner.
+
+    Raises:
+        OSError: as ``stage_beside``, or ``target`` does not exist.
+    """
+    status = target.stat()
+    staged = stage_beside(target, data)
+    try:
+        if (status.st_uid, status.st_gid) != (os.geteuid(), os.getegid()):
+            with contextlib.suppress(PermissionError):
+                os.chown(staged, status.st_uid, status.st_gid)
+        staged.chmod(stat.S_IMODE(status.st_mode))
+    except BaseException:
+        staged.unlink()
+        raise
+    return staged
+
+
 def leftovers(target: Path) -> list[Path]:
     """What ``stage_beside`` left for ``target`` in a process that was killed, sorted."""
     name = re.compile(re.escape(f".{target.name}.tpc-") + "[0-9a-f]{8}")
@@ -60,6 +80,26 @@ def write_atomic(target: Path, data: bytes) -> None:
     with replacing(target) as staged:
         staged.touch(0o644, exist_ok=False)
         staged.write_bytes(data)
+
+
+def replace_file(target: Path, data: bytes) -> None:
+    """Put ``data`` in the place of a file that exists; its owner and permissions stay.
+
+    Raises:
+        TpcError: the file cannot be written; what stood there before is untouched.
+    """
+    try:
+        if target.exists() and not os.access(target, os.W_OK):
+            raise PermissionError(13, "it is read-only")
+        staged = stage_like(target, data)
+        try:
+            staged.replace(target)
+        except BaseException:
+            with contextlib.suppress(OSError):
+                staged.unlink()
+            raise
+    except OSError as error:
+        raise TpcError(f"cannot be written: {error.strerror or error}", target) from error
 
 
 @contextlib.contextmanager

@@ -155,6 +155,16 @@ def require_ros() -> None:
         )
 
 
+def sourced_prefixes(environment: Mapping[str, str] = os.environ) -> list[Path]:
+    """The folders whose set-up files were sourced, as an environment lists them."""
+    return [
+        Path(folder)
+        for variable in ("CMAKE_PREFIX_PATH", "AMENT_PREFIX_PATH")
+        for folder in environment.get(variable, "").split(os.pathsep)
+        if folder
+    ]
+
+
 def ros_places(prefixes: Iterable[Path]) -> dict[str, Path]:
     """The first prefixes that hold catkin and roscpp, by name; without one that is nowhere."""
     found: dict[str, Path] = {}

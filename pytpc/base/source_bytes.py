@@ -1,10 +1,24 @@
-"""The bytes of a source file as columns count them: in UTF-8."""
+"""The bytes of a file, and those of a source file as columns count them: in UTF-8."""
 
 from __future__ import annotations
 
 import io
 import tokenize
 from pathlib import Path
+
+from pytpc.base.errors import InputError
+
+
+def read_bytes(path: Path) -> bytes:
+    """The bytes of a file.
+
+    Raises:
+        InputError: it cannot be read.
+    """
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror or error}", path) from error
 
 
 def source_bytes(path: Path) -> bytes:

@@ -149,7 +149,7 @@ class _Build:
         return not any("CMAKE_TOOLCHAIN_FILE" in one for one in given)
 
     def run(self, on_output: Callable[[str], None] | None) -> LeftAlone:
-        """Build the packages; returns those that are left alone.
+        """Build the packages, and return those that are left alone.
 
         Raises:
             BuildError: a package builds neither with TPC nor without.
@@ -184,9 +184,10 @@ class _Build:
 
 
 def installed(workspace: Path) -> Path:
-    """The folder whose ``setup.bash`` is a workspace's: of ``pytpc build``, else of another build.
+    """The folder with the ``setup.bash`` of a workspace.
 
-    Of these ``install`` comes before ``devel``. That of ``pytpc build`` where there is none.
+    That is the folder of ``pytpc build`` if it was built, else ``install``, else ``devel``. If none
+    is there, it is the folder of ``pytpc build``.
     """
     ours = Bases.of(workspace).install
     places = (ours, workspace / "install", workspace / "devel")
@@ -198,8 +199,8 @@ def workspace_env(install_base: Path, begin: Mapping[str, str] | None = None) ->
 
     Args:
         install_base: the folder with ``setup.bash``.
-        begin: the environment in which that is sourced. None: that of a fresh login; of the
-            caller's own only home, user, language, terminal and time zone are in it.
+        begin: the environment in which it is sourced. None: that of a fresh login, with the
+            caller's home, user, language, terminal and time zone.
 
     Raises:
         WorkspaceError: the folder is not an install base.
@@ -228,7 +229,7 @@ def workspace_env(install_base: Path, begin: Mapping[str, str] | None = None) ->
 
 
 def _require_all(packages: Sequence[Package]) -> Path:
-    """See that everything is there before anything is written; returns tpc.cmake."""
+    """Check that every tool is installed before anything is written; return tpc.cmake."""
     if not any(package.cmakelists.is_file() for package in packages):
         # Nothing is compiled: colcon is all that a workspace in Python alone needs.
         require_tools(["colcon"])
@@ -242,7 +243,7 @@ def _require_all(packages: Sequence[Package]) -> Path:
 
 
 def _require_toolchain(bases: Bases, packages: Sequence[Package], toolchain: Path) -> None:
-    """See that no build folder was configured without this toolchain.
+    """Check that no build folder was configured without this toolchain.
 
     CMake asks for the toolchain once, keeps it in CMakeSystem.cmake and ignores another one, so
     that the package would be built with the compiler of that time and not be analysed.
@@ -260,9 +261,9 @@ def _require_toolchain(bases: Bases, packages: Sequence[Package], toolchain: Pat
 
 @contextlib.contextmanager
 def _alone_in(bases: Bases) -> Iterator[None]:
-    """See that no other build is at work in the bases: two would take each other's folders away.
+    """Hold the bases against other builds: two would remove each other's folders.
 
-    Where the folder cannot be locked, as on some network drives, nothing is seen to.
+    Where the folder cannot be locked, as on some network drives, nothing is checked.
     """
     with contextlib.ExitStack() as stack:
         with contextlib.suppress(OSError):
@@ -303,12 +304,14 @@ def _gather(
     left_alone: Mapping[str, str],
     on_scripts: Callable[[int, int], None] | None,
 ) -> StaticInfo:
-    """What the linker left of all packages, and the Python of those that were built."""
+    """The static information of all packages: the linker's, and that of Python scripts."""
     base = scripts.build_base
     folders = [
         folder for folder in (base / each.name for each in scripts.packages) if folder.is_dir()
     ]
-    _drop_stale(folders)
+    for folder in folders:
+        for stale in stale_files(folder, _compiled(folder)):
+            stale.unlink()
     units = [load_link_unit(path) for folder in folders for path in _compiled(folder)]
     left_out = [*_left_out(folders, left_alone)]
     nodes = python_of_build(scripts, {*names_of(units), *names_of(left_out)}, on_scripts)
@@ -317,19 +320,13 @@ def _gather(
     return StaticInfo.of(units, base, find_copies(units), found)
 
 
-def _drop_stale(folders: Iterable[Path]) -> None:
-    for folder in folders:
-        for stale in stale_files(folder, _compiled(folder)):
-            stale.unlink()
-
-
 def _compiled(folder: Path) -> list[Path]:
-    """The files of what CMake links; those of scripts are `pytpc.build.python_nodes`'s."""
+    """The files of the link units that CMake links; `pytpc.build.python_nodes` has the scripts."""
     return [path for path in unit_files(folder) if not is_python_file(path)]
 
 
 def _python_rules(options: BuildOptions) -> Rules:
-    """The rules for Python: constants and profile are those that C++ is analysed with."""
+    """The rules for Python, with the constants and the profile of the analysis of C++."""
     given = (*options.cmake_args, *options.colcon_args)
     profile = "thesis" if "-DTPC_PROFILE=thesis" in given else "default"
     return replace(load_rules(profile, options.python_rules), constants=options.constants)

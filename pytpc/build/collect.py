@@ -1,4 +1,4 @@
-"""Merges the static information of workspaces and build folders, leaving out what is stale."""
+"""Merges the static information of workspaces and build folders, without stale files."""
 
 from __future__ import annotations
 
@@ -67,7 +67,8 @@ def collect_sources(
     kept, repeated = drop_repeated(kept)
     compiled = [file.unit for file in kept if not file.unit.is_python]
     nodes = [*(file.unit for file in kept if file.unit.is_python), *fresh.units]
-    every = _cmake_folders(sources).union(folders)
+    bases = [base for source in sources if source.is_dir() for base in _build_bases(source)]
+    every = {folder.absolute() for base in bases for folder in build_folders(base)}.union(folders)
     left_out = _left_out(every, compiled)
     taken = names_of(compiled).union(*(target_names(folder) for folder in every))
     units = [*compiled, *named_beside(nodes, taken)]
@@ -121,11 +122,6 @@ def _read(
         if on_progress is not None:
             on_progress(number, len(paths))
     return files, copies
-
-
-def _cmake_folders(sources: Iterable[Path]) -> set[Path]:
-    bases = [base for source in sources if source.is_dir() for base in _build_bases(source)]
-    return {folder.absolute() for base in bases for folder in build_folders(base)}
 
 
 def _left_out(folders: Iterable[Path], units: Iterable[LinkUnit]) -> list[LeftOut]:

@@ -9,19 +9,33 @@ from __future__ import annotations
 
 import re
 import shutil
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import dump_json, parse_json
 from pytpc.base.errors import InputError
-from pytpc.build.faults import first_error
 from pytpc.workspace.colcon import Bases, BuildError
 from pytpc.workspace.packages import Package
 
 # gcc comes with OpenMP; for clang it is a separate package.
-OPENMP_MEND = "clang's OpenMP may be what is missing: apt-get install libomp-19-dev"
+OPENMP_MEND = "clang's OpenMP may be missing: apt-get install libomp-19-dev"
 _OPENMP = re.compile(r"Could NOT find OpenMP|'omp\.h' file not found|unable to find library -lomp")
+_CMAKE_ERROR = re.compile(r"^CMake Error(?: at (?P<place>[^\s:]+:\d+))?")
+_ERRORS = tuple(
+    re.compile(pattern)
+    for pattern in (
+        r"^\S.*:\d+(?::\d+)?: (?:fatal )?error: .*",
+        r"^(?:\S*ld\.lld\S*|ld): error: .*",
+        r"^(?:\S*/)?ld(?:\.\S+)?: .*(?:undefined|cannot|multiple).*",
+        r"^clang\S*: error: .*",
+        r"^\w*(?:Error|Exception)\b: .*",
+        r"^.*\berror: .*",
+        r"^g?make(?:\[\d+\])?: \*\*\* .*",
+    )
+)
+_WARNING = ": warning: "
+_LONGEST = 300
 _FILE = "left-alone.json"
 _ASIDE = "set-aside"
 
@@ -59,7 +73,7 @@ class LeftAlone:
 
     @property
     def folders(self) -> list[Path]:
-        """The folders of the packages, those that are being tried among them."""
+        """The folders of the packages, including those that are being tried."""
         return [folder for name, folder in self._folders.items() if name in self.reasons]
 
     def can_try(self, error: BuildError) -> bool:
@@ -124,3 +138,36 @@ def _reason(error: BuildError) -> str:
     if _OPENMP.search(text):
         why += f"; {OPENMP_MEND}"
     return why
+
+
+def first_error(output: str) -> str:
+    """The first error in the output as one line; without one, the last line."""
+    lines = [line.rstrip() for line in output.splitlines()]
+    for at, line in enumerate(lines):
+        cmake = _CMAKE_ERROR.match(line)
+        if cmake is not None:
+            said = _indented(lines[at + 1 :])
+            where = f"{cmake['place']}: " if cmake["place"] else ""
+            return _shortened(f"CMake: {where}{said or line}")
+        if _WARNING not in line and any(pattern.match(line) for pattern in _ERRORS[:-1]):
+            return _shortened(line)
+    for line in lines:
+        if _ERRORS[-1].match(line):
+            return _shortened(line)
+    return _shortened(next((line for line in reversed(lines) if line), "it says nothing"))
+
+
+def _indented(lines: Iterable[str]) -> str:
+    """The first paragraph of a message of CMake's, which is indented by two."""
+    said: list[str] = []
+    for line in lines:
+        if line.startswith("  "):
+            said.append(line.strip())
+        elif line or said:
+            break
+    return " ".join(said)
+
+
+def _shortened(text: str) -> str:
+    one = " ".join(text.split())
+    return one if len(one) <= _LONGEST else f"{one[: _LONGEST - 4]} ..."

@@ -48,7 +48,7 @@ class Scripts:
 class PythonUnits:
     """The link units of scripts, and the scripts that could not be analysed, with the reason.
 
-    ``folders`` are those of which there is no other script, without links in their paths.
+    ``folders`` are the workspaces whose scripts were all looked at, without links in their paths.
     """
 
     units: tuple[LinkUnit, ...] = ()
@@ -149,7 +149,7 @@ def analyse_workspaces(
     A build folder is no workspace, though tools put manifests there.
 
     Args:
-        folders: what else is among them, as files, is passed over.
+        folders: files and other folders among them are skipped.
         rules: what reads and what exposes.
         on_progress: called with (scripts done, scripts in all).
     """
@@ -182,7 +182,7 @@ def named_beside(units: Iterable[LinkUnit], taken: Collection[Name]) -> list[Lin
 
     Args:
         units: of scripts.
-        taken: package and name of what there is besides.
+        taken: package and name of the other link units.
     """
     used = set(taken)
     named = []

@@ -22,7 +22,7 @@ _CACHE = "CMakeCache.txt"
 
 @dataclass(frozen=True, slots=True)
 class Recorded:
-    """What tpc.cmake noted of a link unit; ``left_out`` is why, or empty where it is not."""
+    """A link unit that tpc.cmake recorded; ``left_out`` is why it is not analysed, or empty."""
 
     package: str
     name: str
@@ -47,7 +47,7 @@ def build_folders(base: Path) -> list[Path]:
 
 
 def recorded_units(build_folder: Path) -> list[Recorded] | None:
-    """What tpc.cmake noted in a build folder; None where it noted nothing.
+    """The link units that tpc.cmake recorded in a build folder; None if it recorded none.
 
     Raises:
         InputError: the file is broken, with the line.
@@ -70,7 +70,7 @@ def recorded_units(build_folder: Path) -> list[Recorded] | None:
 
 
 def known_targets(build_folder: Path) -> list[LinkTarget] | None:
-    """The link units that CMake told of; before it was asked, those that tpc.cmake noted.
+    """The link units that CMake named; before it was asked, those that tpc.cmake recorded.
 
     Returns:
         None where neither left anything.
@@ -125,7 +125,7 @@ def left_out_units(build_folder: Path) -> list[LeftOut]:
 
 
 def stale_files(build_folder: Path, files: list[Path]) -> Iterator[Path]:
-    """Those of ``files`` that are of no link unit which this build folder still has."""
+    """The ``files`` whose link unit this build folder no longer has."""
     recorded = recorded_units(build_folder)
     targets = link_targets(build_folder)
     if targets is None and recorded is None:
@@ -156,7 +156,7 @@ def _why(unit: Recorded, target: LinkTarget) -> str:
     beginnings = [_beginning(path) for path in objects]
     if objects and not any(data.startswith(_BITCODE) for data in beginnings):
         return "its objects are native code, not compiled with -flto"
-    # Clang marks what is not for ThinLTO.
+    # clang marks bitcode for ThinLTO.
     if any(
         data.startswith(_BITCODE) and b"ThinLTO" not in path.read_bytes()
         for path, data in zip(objects, beginnings, strict=True)

@@ -48,41 +48,36 @@ class Stale:
 def drop_stale(
     files: Iterable[UnitFile], targets: Mapping[Path, Sequence[BuiltTarget] | None]
 ) -> tuple[list[UnitFile], list[Stale]]:
-    """What is still built, and what is not.
+    """Split files into those that are still built and those that are not.
 
-    A unit is left out where CMake knows no such target any more, and where the target's file has
-    none of the keys that were put into it. It stays where CMake was not asked, where the target is
-    not built at present, where nothing was put into it that could be looked for, and where it is a
-    script's, which is no target.
+    A unit is left out if CMake no longer knows its target, or if the target's file has none of the
+    keys that were put into it. It stays if CMake was not asked, if the target is not built at
+    present, if it has no keys to look for, and if it is a script, which has no target.
 
     Args:
         files: of any number of build folders.
         targets: build folder -> its targets; None where CMake left no answer.
     """
-    kept: list[UnitFile] = []
-    dropped: list[Stale] = []
-    for file in files:
+
+    def why(file: UnitFile) -> str | None:
         known = None if file.unit.is_python else targets.get(file.build_folder)
-        reason = None if known is None else _why_stale(file, known)
-        if reason is None:
-            kept.append(file)
-        else:
-            dropped.append(Stale(file, reason))
-    return kept, dropped
+        return None if known is None else _why_stale(file, known)
+
+    return _split(files, why)
 
 
 def drop_without_sources(
     files: Iterable[UnitFile], workspaces: Iterable[str], gone: Callable[[str], bool]
 ) -> tuple[list[UnitFile], list[Stale]]:
-    """What is of a package that is still there, and what is of one that was removed.
+    """Split files by whether their package is still there or was removed.
 
-    Only packages inside one of ``workspaces`` are looked for, and only where another one there is
-    found: a robot may have what was built without the sources.
+    Only packages inside one of ``workspaces`` are looked for, and only where another package of
+    that workspace is found: a robot may have what was built without the sources.
 
     Args:
         files: of any number of build folders.
         workspaces: absolute folders.
-        gone: whether a folder, a unit's ``source_root``, is not there.
+        gone: whether a folder, a unit's ``source_root``, is missing.
     """
     files = list(files)
     roots = {file.unit.source_root for file in files}
@@ -91,35 +86,48 @@ def drop_without_sources(
         inside = {root for root in roots if Path(root).is_relative_to(workspace)}
         missing = {root for root in inside if gone(root)}
         removed |= missing if missing != inside else set()
-    kept = [file for file in files if file.unit.source_root not in removed]
-    dropped = [
-        Stale(file, f"its sources, {file.unit.source_root}, no longer exist")
-        for file in files
-        if file.unit.source_root in removed
-    ]
-    return kept, dropped
+
+    def why(file: UnitFile) -> str | None:
+        root = file.unit.source_root
+        return f"its sources, {root}, no longer exist" if root in removed else None
+
+    return _split(files, why)
 
 
 def drop_without_scripts(
     files: Iterable[UnitFile], gone: Callable[[str], bool]
 ) -> tuple[list[UnitFile], list[Stale]]:
-    """What is of a script that is still there, or of none, and what is of one that was removed.
+    """Split files by whether their script was removed; units of targets have none and stay.
 
-    Where the sources are not there at all, a script is not missed: a robot may have what was built
+    Where all sources are missing, the script is not missed: a robot may have what was built
     without them.
 
     Args:
         files: of any number of build folders.
-        gone: whether a file, or a folder, is not there.
+        gone: whether a file, or a folder, is missing.
     """
+
+    def why(file: UnitFile) -> str | None:
+        script = file.unit.script_path
+        if script is None or not gone(script) or gone(file.unit.source_root):
+            return None
+        return f"its script, {script}, no longer exists"
+
+    return _split(files, why)
+
+
+def _split(
+    files: Iterable[UnitFile], why: Callable[[UnitFile], str | None]
+) -> tuple[list[UnitFile], list[Stale]]:
+    """The files that stay, and those for which ``why`` gives a reason to leave them out."""
     kept: list[UnitFile] = []
     dropped: list[Stale] = []
     for file in files:
-        script = file.unit.script_path
-        if script is None or not gone(script) or gone(file.unit.source_root):
+        reason = why(file)
+        if reason is None:
             kept.append(file)
         else:
-            dropped.append(Stale(file, f"its script, {script}, no longer exists"))
+            dropped.append(Stale(file, reason))
     return kept, dropped
 
 
@@ -132,17 +140,17 @@ def drop_repeated(files: Iterable[UnitFile]) -> tuple[list[UnitFile], list[Stale
     ordered = sorted(files, key=lambda file: (-file.written_ns, file.path))
     for file in ordered:
         newest.setdefault(_identity(file.unit), file)
-    kept = sorted(newest.values(), key=lambda file: file.path)
-    dropped = []
-    for file in ordered:
+
+    def why(file: UnitFile) -> str | None:
         last = newest[_identity(file.unit)]
-        if last is not file:
-            dropped.append(Stale(file, f"built later in {last.build_folder}"))
-    return kept, dropped
+        return None if last is file else f"built later in {last.build_folder}"
+
+    kept, dropped = _split(ordered, why)
+    return sorted(kept, key=lambda file: file.path), dropped
 
 
 def _identity(unit: LinkUnit) -> tuple[str, str, str | None]:
-    """What two files of one link unit have in common.
+    """The key by which two files of one link unit are recognised.
 
     A script's unit is called after its path where a target has its name, and that may change.
     """

@@ -14,7 +14,7 @@ from pytpc.base.shell_words import SHELLS, EnvChange
 from pytpc.build.build import installed, workspace_env
 from pytpc.cli.arguments import JSON, PATH
 from pytpc.cli.console import warn
-from pytpc.ros.python_env import has_python, with_python, without_python
+from pytpc.ros.node_start import has_python, with_python, without_python
 
 
 @click.command("env")

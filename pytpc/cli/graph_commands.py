@@ -15,9 +15,8 @@ from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import JSON, PATH
 from pytpc.cli.console import console, progress, table_of, warn
 from pytpc.python_runtime.config import POLICIES, SINKS
-from pytpc.ros.node_settings import NodeStatus, chosen
 from pytpc.ros.ros1 import relay
-from pytpc.ros.ros1.instrumented_nodes import InstrumentedNodes, Value
+from pytpc.ros.ros1.instrumented_nodes import InstrumentedNodes, NodeStatus, Value, chosen
 from pytpc.ros.ros1.master import uri_of
 
 _COUNT = click.IntRange(min=0, max=(1 << 31) - 1)

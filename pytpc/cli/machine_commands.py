@@ -15,10 +15,12 @@ from pytpc.base.wording import many
 from pytpc.cli.arguments import CONSTANTS, JSON, PATH, RULES
 from pytpc.cli.console import console, print_json, table_of
 from pytpc.workspace.doctor.finding import Finding, Severity, by_severity
-from pytpc.workspace.doctor.look import look_at_machine
-from pytpc.workspace.doctor.look_workspace import look_at_known, look_at_workspace
-from pytpc.workspace.doctor.machine import check_machine
-from pytpc.workspace.doctor.workspace import check_workspace
+from pytpc.workspace.doctor.machine import check_machine, look_at_machine
+from pytpc.workspace.doctor.workspace import (
+    check_workspace,
+    look_at_known,
+    look_at_workspace,
+)
 from pytpc.workspace.toolchain import Choices, Way, shown, steps
 
 _STYLES = {Severity.ERROR: "bold red", Severity.WARNING: "yellow", Severity.NOTE: "dim"}

@@ -38,7 +38,7 @@ from pytpc.recording.marks import (
 )
 from pytpc.recording.marks_file import MarksFile
 from pytpc.recording.mission import Recording
-from pytpc.ros.marking import GraphMarks
+from pytpc.ros.ros1.marking import GraphMarks
 from pytpc.ros.ros1.master import uri_of
 
 _NAMESPACE = re.compile(r"[A-Za-z]\w*(/[A-Za-z]\w*)*", re.ASCII)

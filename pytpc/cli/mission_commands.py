@@ -23,6 +23,7 @@ from pytpc.api.record import (
     record_running,
 )
 from pytpc.base.errors import InputError
+from pytpc.base.signals import stop_on_signals
 from pytpc.base.wording import many
 from pytpc.cli.arguments import JSON, PATH, as_object
 from pytpc.cli.console import progress
@@ -31,7 +32,6 @@ from pytpc.recording.faults import faults_of
 from pytpc.recording.marks import MARK_TYPES
 from pytpc.recording.mission import REPORTS_FOLDER
 from pytpc.ros.ros1.master import uri_of
-from pytpc.ros.ros1.record_graph import stop_on_signals
 
 _SILENT_S = 5.0
 _LAUNCH_TIMEOUT_S = 300.0

@@ -39,7 +39,7 @@ from pytpc.recording.mission import Recording
 from pytpc.recording.parameter_change import Change
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.changes import read_changes
-from pytpc.values.declared_files import read_declared
+from pytpc.values.declared import read_declared
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import click
 
 from pytpc.base.errors import InputError
 from pytpc.cli.arguments import PATH
-from pytpc.ros.node_program import command_of
+from pytpc.ros.node_start import command_of
 
 
 @click.command("run", context_settings={"allow_interspersed_args": False})

@@ -45,7 +45,7 @@ from pytpc.present.as_json import look_json
 from pytpc.present.marking_terminal import MarkedMission
 from pytpc.present.watch_screen import LAYOUTS, WatchOptions, table
 from pytpc.recording.marking_session import clock_text
-from pytpc.ros.marking import GraphMarks
+from pytpc.ros.ros1.marking import GraphMarks
 from pytpc.ros.ros1.master import uri_of
 
 _ONCE_S = 5.0

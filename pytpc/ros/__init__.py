@@ -1,1 +1,1 @@
-"""What speaks to a running graph: graphs, recorders, marks, live settings."""
+"""Speaks to a running graph: graphs, recorders, marks, live settings."""

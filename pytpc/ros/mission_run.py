@@ -35,9 +35,9 @@ DEFAULT_TOPICS = ("/rosout", "/threshold_information", *MARK_TOPICS)
 
 @dataclass(frozen=True)
 class RecorderStatus:
-    """What the recorder says of itself; times in ns on the graph's clock, at the start and now.
+    """The state of the recorder; times in ns on the graph's clock, at the start and now.
 
-    ``done_ns`` is when the topic that says so said that the mission is done, None before.
+    ``done_ns`` is when a topic said that the mission is done, None before.
     ``missed_before`` has the messages on /rosout that a node sent before the recorder was
     connected, ``lost`` those that went missing afterwards.
     """
@@ -54,7 +54,7 @@ class RecorderStatus:
 
     @property
     def done(self) -> bool:
-        """Whether the mission is."""
+        """Whether the mission is done."""
         return self.done_ns is not None
 
 
@@ -67,15 +67,21 @@ class Progress:
     reports: int
     marks: int
 
+    @classmethod
+    def of(cls, status: RecorderStatus, wall_s: float) -> Progress:
+        """The progress of the mission whose recorder has this status."""
+        sim_s = (status.now_ns - status.began_ns) / 1e9 if status.began_ns else 0.0
+        return cls(sim_s, wall_s, status.reports, marks_of(status.messages))
+
 
 @dataclass(frozen=True, slots=True)
 class RecordOptions:
-    """What of a mission is recorded, where to, and until when.
+    """What a recording has, where it is written, and when it ends.
 
     Attributes:
         out_dir: the folder of the results.
-        launch: the launch file; where the graph runs already, the one that it was started with,
-            without which the origins of its values are not known.
+        launch: the launch file; for a running graph, the one that it was started with: without
+            it the origins of its values are not known.
         args: the arguments of the launch file.
         timeout_s: wall time after which the mission is ended; None: it is not.
         until: a topic of type std_msgs/Bool; when it says true the mission is done.
@@ -182,7 +188,7 @@ def save_run(run: MissionRun, options: RecordOptions) -> None:
 
 
 def read_status(path: Path) -> RecorderStatus | None:
-    """What the recorder last said of itself; None where it has not said anything."""
+    """The state that the recorder saved last; None if it has saved none."""
     try:
         return RecorderStatus(**json.loads(path.read_text(encoding="utf-8")))
     except FileNotFoundError:
@@ -190,7 +196,7 @@ def read_status(path: Path) -> RecorderStatus | None:
 
 
 def save_status(status: RecorderStatus, path: Path) -> None:
-    """Replace the status file; no reader ever sees a half of it."""
+    """Replace the status file; no reader ever sees half of it."""
     beside = path.with_name(path.name + ".new")
     beside.write_text(json.dumps(asdict(status)), encoding="utf-8")
     beside.replace(path)

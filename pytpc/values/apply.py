@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import contextlib
-import difflib
 import os
-import re
-import stat
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from pytpc.base.atomic import stage_beside
+from pytpc.base.atomic import replace_file
+from pytpc.base.diff import unified_diff
 from pytpc.base.errors import InputError, TpcError
+from pytpc.base.source_bytes import read_bytes
 from pytpc.values.journal import Journal, JournalEntry, digest
 from pytpc.values.scalars import number_text
 
@@ -21,8 +19,8 @@ from pytpc.values.scalars import number_text
 class FileChange:
     """A change of one file by a new value.
 
-    ``path`` is the file itself, behind symbolic links. ``old`` is None where the parameter stood
-    nowhere. ``notes`` are sentences for who applies it.
+    ``path`` is the file to which symbolic links lead. ``old`` is None if no file set the parameter.
+    ``notes`` are sentences for the user.
     """
 
     parameter: str
@@ -33,18 +31,6 @@ class FileChange:
     new: object
     lineno: int
     notes: tuple[str, ...] = ()
-
-
-def read_file(path: Path) -> bytes:
-    """Read the bytes of a file that will be changed.
-
-    Raises:
-        InputError: it cannot be read.
-    """
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror}", path) from error
 
 
 def decoded(data: bytes, path: Path) -> str:
@@ -81,20 +67,16 @@ def apply_change(change: FileChange, journal: Journal) -> JournalEntry:
             it was.
     """
     with journal.held():
-        return _apply_change(change, journal)
-
-
-def _apply_change(change: FileChange, journal: Journal) -> JournalEntry:
-    if read_file(change.path) != change.before:
-        raise TpcError("the file has changed meanwhile; run the command again", change.path)
-    values = shown(change.old), shown(change.new)
-    entry = journal.add_file(change.parameter, values, change.path, change.before, change.after)
-    try:
-        replace_file(change.path, change.after)
-    except BaseException:
-        journal.remove(entry)
-        raise
-    return entry
+        if read_bytes(change.path) != change.before:
+            raise TpcError("the file has changed meanwhile; run the command again", change.path)
+        values = shown(change.old), shown(change.new)
+        entry = journal.add_file(change.parameter, values, change.path, change.before, change.after)
+        try:
+            replace_file(change.path, change.after)
+        except BaseException:
+            journal.remove(entry)
+            raise
+        return entry
 
 
 def undo_change(entry: JournalEntry, journal: Journal) -> FileChange:
@@ -106,7 +88,7 @@ def undo_change(entry: JournalEntry, journal: Journal) -> FileChange:
     path, before = entry.path, entry.before
     assert path is not None, "a change of a file"
     assert before is not None, "a change of a file"
-    now = read_file(path)
+    now = read_bytes(path)
     later = [e for e in journal.entries() if e.path == path and e.number > entry.number]
     if later:
         raise TpcError(f"change {later[-1].number} came later; undo that first", path)
@@ -118,45 +100,49 @@ def undo_change(entry: JournalEntry, journal: Journal) -> FileChange:
     return FileChange(entry.parameter, path, now, before, entry.new, entry.old, 0)
 
 
-def replace_file(path: Path, data: bytes) -> None:
-    """Replace the content of a file; its owner and permissions stay.
+def entry_of(journal: Journal, what: str) -> JournalEntry:
+    """The change to undo.
+
+    Args:
+        journal: of the changes.
+        what: its number; or a file, whose last change is meant; or empty for the last of all.
 
     Raises:
-        TpcError: it cannot be written; what stood there is untouched.
+        InputError: there is no such change.
     """
-    try:
-        status = path.stat()
-        if not os.access(path, os.W_OK):
-            raise PermissionError(13, "it is read-only")
-        staged = stage_beside(path, data)
-        try:
-            if (status.st_uid, status.st_gid) != (os.geteuid(), os.getegid()):
-                with contextlib.suppress(PermissionError):
-                    os.chown(staged, status.st_uid, status.st_gid)
-            staged.chmod(stat.S_IMODE(status.st_mode))
-            staged.replace(path)
-        except BaseException:
-            with contextlib.suppress(OSError):
-                staged.unlink()
-            raise
-    except OSError as error:
-        raise TpcError(f"cannot be written: {error.strerror or error}", path) from error
+    entries = journal.entries()
+    if what.isdigit() and not Path(what).exists():
+        meant = [entry for entry in entries if entry.number == int(what)]
+    elif what:
+        real = Path(what).resolve()
+        meant = [entry for entry in entries if entry.path == real]
+    else:
+        meant = entries
+    if not meant:
+        raise InputError(
+            f"no change of {what} is recorded" if what else "no change is recorded: nothing to undo"
+        )
+    return meant[-1]
+
+
+def take_back_file(entry: JournalEntry, journal: Journal, *, dry_run: bool = False) -> FileChange:
+    """Undo a change of a file and forget it; return the change that this is.
+
+    Raises:
+        TpcError: the file was changed since.
+    """
+    with journal.held():
+        change = undo_change(entry, journal)
+        if not dry_run:
+            replace_file(change.path, change.after)
+            journal.remove(entry)
+    return change
 
 
 def diff_of(change: FileChange) -> str:
     """The change as a unified diff; bytes that are no UTF-8 are shown as replacement characters."""
-    before, after = (_lines(data) for data in (change.before, change.after))
-    name = str(change.path).lstrip("/")
-    pieces = difflib.unified_diff(before, after, f"a/{name}", f"b/{name}")
-    lines = []
-    for piece in pieces:
-        lines.append(piece if piece.endswith("\n") else f"{piece}\n\\ No newline at end of file\n")
-    return "".join(lines)
-
-
-def _lines(data: bytes) -> list[str]:
-    """Lines as diff counts them: a carriage return alone ends none."""
-    return [line.decode("utf-8", "replace") for line in re.findall(rb"[^\n]*\n|[^\n]+", data)]
+    name = os.fsencode(str(change.path).lstrip("/"))
+    return unified_diff(name, change.before, change.after).decode("utf-8", "replace")
 
 
 def change_as_json(change: FileChange) -> Mapping[str, object]:

@@ -13,7 +13,7 @@ _NAME = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
 
 
 def source_of(path: Path | None) -> Path | None:
-    """The file of which ``path`` is an installed copy, or to which it is a symbolic link.
+    """The source of an installed copy, or the file to which a symbolic link leads.
 
     An install space copies ``share/PACKAGE/REST`` from the package's folder below ``src``. Where a
     package puts its files elsewhere than they stand, the only file of the same name counts.

@@ -20,6 +20,7 @@ from typing import Any
 
 from pytpc.base.atomic import stage_beside
 from pytpc.base.errors import InputError, TpcError
+from pytpc.base.source_bytes import read_bytes
 
 SCHEMA = 1
 _MOST_TRIES = 1000
@@ -99,7 +100,7 @@ class Journal:
         return self._all()[0]
 
     def broken(self) -> list[InputError]:
-        """What is wrong with the entries that cannot be read; the others can still be used."""
+        """The faults of the entries that cannot be read; the others can still be used."""
         return self._all()[1]
 
     def _all(self) -> tuple[list[JournalEntry], list[InputError]]:
@@ -182,7 +183,7 @@ class Journal:
 
 def _read(path: Path) -> JournalEntry:
     try:
-        document = json.loads(path.read_text(encoding="utf-8"))
+        document = json.loads(read_bytes(path))
         if document["schema"] != SCHEMA:
             raise ValueError(f"version {document['schema']}")
         before = document["before"]
@@ -197,7 +198,5 @@ def _read(path: Path) -> JournalEntry:
             str(document["after"]),
             dict(document["live"]),
         )
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror}", path) from error
     except (ValueError, KeyError, TypeError) as error:
-        raise InputError(f"not a change that was noted: {error}", path) from error
+        raise InputError(f"not a recorded change: {error}", path) from error

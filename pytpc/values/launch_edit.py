@@ -4,28 +4,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import NamedTuple
 
-from pytpc.values.launch_value import launch_text, launch_value
 from pytpc.values.launch_xml import Attribute, Tag, encoding_of, inner_text, read_tags, written
-from pytpc.values.new_value import Refused, read_value
+from pytpc.values.new_value import Refused, launch_text, launch_value, read_value
 from pytpc.values.scalars import type_of
-from pytpc.values.yaml_edit import all_settings, edit_yaml
+from pytpc.values.yaml_edit import Edit, all_settings, edit_yaml
 
 _LISTED = 5
 _GIVE = "the file was changed since, or has several; give the launch file instead of the mission"
-
-
-@dataclass(frozen=True, slots=True)
-class LaunchEdit:
-    """A change of one value in a launch file; see ``yaml_edit.Edit``."""
-
-    data: bytes
-    old: object
-    new: object
-    lineno: int
-    notes: tuple[str, ...] = ()
 
 
 def tags_of(data: bytes) -> list[Tag]:
@@ -43,7 +31,7 @@ def tags_of(data: bytes) -> list[Tag]:
 class NewText(NamedTuple):
     """A new value as typed, and the ``type`` of the parameter's tag.
 
-    ``force`` changes the type, replaces what roslaunch works out, and changes other uses with it.
+    ``force`` changes the type, replaces what roslaunch computes, and changes other uses with it.
     """
 
     text: str
@@ -51,9 +39,7 @@ class NewText(NamedTuple):
     force: bool = False
 
 
-def edit_param(
-    data: bytes, name: str, lineno: int, given: str, *, force: bool = False
-) -> LaunchEdit:
+def edit_param(data: bytes, name: str, lineno: int, given: str, *, force: bool = False) -> Edit:
     """Put a value into a ``<param value=...>``.
 
     Args:
@@ -61,17 +47,14 @@ def edit_param(
         name: the parameter's full name.
         lineno: the line of the tag; 0 where it is not known.
         given: the new value as typed.
-        force: change the type, or replace what roslaunch works out.
+        force: change the type, or replace what roslaunch computes.
 
     Raises:
         Refused: see docs/how-to/change-a-parameter.md.
     """
     tags = tags_of(data)
-    found = [t for t in tags if t.name == "param" and _names(t, name)]
-    here = [tag for tag in found if tag.lineno == lineno] or (found if len(found) == 1 else [])
-    if len(here) != 1:
-        raise Refused(f"the <param> for {name} is gone; {_GIVE}", lineno or None)
-    tag = here[0]
+    found = [tag for tag in tags if tag.name == "param" and _names(tag, name)]
+    tag = _only(found, lineno, f"the <param> for {name}")
     value = tag.attributes.get("value")
     if value is None:
         raise Refused("its value is the text of a file, or the output of a command", tag.lineno)
@@ -85,7 +68,7 @@ def edit_argument(
     lineno: int,
     given: NewText,
     via: Sequence[int] = (),
-) -> LaunchEdit:
+) -> Edit:
     """Put a value into the ``<arg>`` whose value a parameter has.
 
     Args:
@@ -99,11 +82,8 @@ def edit_argument(
         Refused: see docs/how-to/change-a-parameter.md.
     """
     tags = tags_of(data)
-    found = [t for t in tags if t.name == "arg" and _attribute(t, "name") == name]
-    here = [tag for tag in found if tag.lineno == lineno] or (found if len(found) == 1 else [])
-    if len(here) != 1:
-        raise Refused(f"the <arg> {name} is gone; {_GIVE}", lineno or None)
-    tag = here[0]
+    found = [tag for tag in tags if tag.name == "arg" and _attribute(tag, "name") == name]
+    tag = _only(found, lineno, f"the <arg> {name}")
     value = tag.attributes.get("value") or tag.attributes.get("default")
     if value is None:
         raise Refused(f"<arg> {name} has no value here", tag.lineno)
@@ -115,12 +95,20 @@ def edit_argument(
             raise Refused(f"<arg> {name} is used in line {lines}, too; --force changes all")
         notes = [f"line {lines} uses <arg> {name}, too, and changes with it"]
     edit = _edit_attribute(data, tag, value, given)
-    return LaunchEdit(edit.data, edit.old, edit.new, edit.lineno, (*edit.notes, *notes))
+    return replace(edit, notes=(*edit.notes, *notes))
+
+
+def _only(found: list[Tag], lineno: int, what: str) -> Tag:
+    """The tag in this line, else the only one."""
+    here = [tag for tag in found if tag.lineno == lineno] or found
+    if len(here) != 1:
+        raise Refused(f"{what} is gone; {_GIVE}", lineno or None)
+    return here[0]
 
 
 def edit_inline(
     data: bytes, keys: tuple[str, ...], lineno: int, given: str, *, force: bool = False
-) -> LaunchEdit:
+) -> Edit:
     """Put a value into the YAML inside a ``<rosparam>``.
 
     ``lineno`` is that of the value, or 0: the only one that sets it is meant.
@@ -145,10 +133,10 @@ def edit_inline(
         first = data[:start].count(b"\n")
         edit = edit_yaml(data[start:end].decode(encoding), keys, given, force=force)
         in_section = data[:start].endswith(b"<![CDATA[")
-        if "]]>" in edit.text if in_section else "<" in edit.text or "&" in edit.text:
+        if b"]]>" in edit.data if in_section else b"<" in edit.data or b"&" in edit.data:
             raise Refused("the value has characters that are special in XML", lineno)
-        result = data[:start] + _encoded(edit.text, encoding) + data[end:]
-        return LaunchEdit(result, edit.old, edit.new, first + edit.lineno, edit.notes)
+        result = data[:start] + _encoded(edit.data.decode(), encoding) + data[end:]
+        return replace(edit, data=result, lineno=first + edit.lineno)
     raise Refused(f"the <rosparam> with it is gone; {_GIVE}", lineno or None)
 
 
@@ -159,7 +147,7 @@ def _sets(text: str, keys: tuple[str, ...]) -> bool:
         return False
 
 
-def add_param(data: bytes, offset: int | None, name: str, value: object, given: str) -> LaunchEdit:
+def add_param(data: bytes, offset: int | None, name: str, value: object, given: str) -> Edit:
     """Add a ``<param>`` to the tag of a node, or before the end of the launch file.
 
     Args:
@@ -196,21 +184,24 @@ def add_param(data: bytes, offset: int | None, name: str, value: object, given: 
     added = _encoded(f"{newline}{step}{line}{more}", encoding_of(data))
     result = head + added + tail
     tags_of(result)
-    return LaunchEdit(result, None, value, _line_at(result, len(head)) + 1)
+    return Edit(result, None, value, _line_at(result, len(head)) + 1)
 
 
-def _edit_attribute(data: bytes, tag: Tag, attribute: Attribute, given: NewText) -> LaunchEdit:
+def _edit_attribute(data: bytes, tag: Tag, attribute: Attribute, given: NewText) -> Edit:
     text, kind, force = given
     old_text = attribute.value
     notes = []
     if "$(" in old_text:
         if not force:
             raise Refused(
-                f"roslaunch works its value out: {old_text}; --force replaces it", tag.lineno
+                f"roslaunch computes its value: {old_text}; --force replaces it", tag.lineno
             )
         notes.append(f"{old_text} is replaced by a value")
         old: object = old_text
-        new = _typed(text, kind)
+        try:
+            new = launch_value(text, kind)
+        except ValueError as error:
+            raise Refused(f"{text!r} does not fit the parameter's type: {error}") from error
     else:
         try:
             old = launch_value(old_text, kind)
@@ -221,7 +212,7 @@ def _edit_attribute(data: bytes, tag: Tag, attribute: Attribute, given: NewText)
     piece = _encoded(written(put, attribute.quote), encoding_of(data))
     result = data[: attribute.start] + piece + data[attribute.end :]
     _check(data, result, (tag.offset, attribute.name), put)
-    return LaunchEdit(result, old, new, _line_at(data, attribute.start), tuple(notes))
+    return Edit(result, old, new, _line_at(data, attribute.start), tuple(notes))
 
 
 def _check(data: bytes, result: bytes, place: tuple[int, str], text: str) -> None:
@@ -237,13 +228,6 @@ def _check(data: bytes, result: bytes, place: tuple[int, str], text: str) -> Non
     found = [{name: one.value for name, one in tag.attributes.items()} for tag in after]
     if found != wanted or [tag.name for tag in before] != [tag.name for tag in after]:
         raise Refused("it cannot be written without changing other values")
-
-
-def _typed(given: str, kind: str) -> object:
-    try:
-        return launch_value(given, kind)
-    except ValueError as error:
-        raise Refused(f"{given!r} does not fit the parameter's type: {error}") from error
 
 
 def _names(tag: Tag, name: str) -> bool:

@@ -11,12 +11,10 @@ import codecs
 import re
 from dataclasses import dataclass, field
 from xml.parsers import expat
-from xml.sax.saxutils import unescape
 
 _DECLARED = re.compile(rb"""<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z0-9._-]+)["']""")
-_ATTRIBUTE = re.compile(r"""\s+([^\s=/>]+)\s*=\s*("[^"]*"|'[^']*')""")
+_ATTRIBUTE = re.compile(r"""\s+[^\s=/>]+\s*=\s*("[^"]*"|'[^']*')""")
 _TAG_HEAD = re.compile(r"<[^\s/>]+")
-_ENTITIES = {"&quot;": '"', "&apos;": "'"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,11 +71,13 @@ def read_tags(data: bytes) -> list[Tag]:
         ValueError: it is not XML; the message has the line.
     """
     tags: list[Tag] = []
+    values: list[dict[str, str]] = []
     stack: list[Tag] = []
     parser = expat.ParserCreate()
 
-    def begin(name: str, _attributes: object) -> None:
+    def begin(name: str, attributes: dict[str, str]) -> None:
         tag = Tag(name, parser.CurrentByteIndex, parser.CurrentLineNumber)
+        values.append(attributes)
         if stack:
             tag.parent = stack[-1]
             stack[-1].children.append(tag)
@@ -89,46 +89,38 @@ def read_tags(data: bytes) -> list[Tag]:
 
     parser.StartElementHandler = begin
     parser.EndElementHandler = end
-    encoding = encoding_of(data)
+    encoding_of(data)
     try:
         parser.Parse(data, True)
     except expat.ExpatError as error:
         what = expat.ErrorString(error.code)
         raise ValueError(f"not XML in line {error.lineno}: {what}") from error
     bounds = [tag.offset for tag in tags[1:]]
-    for tag, bound in zip(tags, [*bounds, len(data)], strict=True):
-        _read_head(tag, data[tag.offset : bound], encoding)
+    for tag, bound, given in zip(tags, [*bounds, len(data)], values, strict=True):
+        _read_head(tag, data[tag.offset : bound], given)
     return tags
 
 
-def _read_head(tag: Tag, data: bytes, encoding: str) -> None:
-    """Find the attributes of a start tag; expat has checked that it is well formed."""
+def _read_head(tag: Tag, data: bytes, values: dict[str, str]) -> None:
+    """Find where the attributes of a start tag stand, whose values expat has read."""
     # All encodings here have one byte for each character of the markup.
     text = data.decode("latin-1")
     head = _TAG_HEAD.match(text)
     if head is None:
         raise ValueError(f"line {tag.lineno}: <{tag.name}> comes out of an entity")
     at = head.end()
-    while (found := _ATTRIBUTE.match(text, at)) is not None:
-        raw = found[2][1:-1].encode("latin-1").decode(encoding)
-        start = tag.offset + found.start(2) + 1
-        end = tag.offset + found.end(2) - 1
-        value = meaning(raw)
-        tag.attributes[found[1]] = Attribute(found[1], value, start, end, found[2][0])
+    for name, value in values.items():
+        found = _ATTRIBUTE.match(text, at)
+        if found is None:
+            break  # the others have defaults in the DTD
+        start, end = (tag.offset + place for place in found.span(1))
+        tag.attributes[name] = Attribute(name, value, start + 1, end - 1, found[1][0])
         at = found.end()
     close = text.index(">", at)
     tag.closed = text[at:close].strip() == "/"
     tag.head_end = tag.offset + close + 1
     if tag.closed:
         tag.end = tag.head_end
-
-
-def meaning(raw: str) -> str:
-    """The value of an attribute's text: entities resolved, white space as blanks."""
-    text = re.sub(r"\r\n|[\r\n\t]", " ", raw)
-    text = re.sub(r"&#(\d+);", lambda m: chr(int(m[1])), text)
-    text = re.sub(r"&#x([0-9a-fA-F]+);", lambda m: chr(int(m[1], 16)), text)
-    return unescape(text, _ENTITIES)
 
 
 def written(value: str, quote: str) -> str:

@@ -1,14 +1,18 @@
-"""Reads a new value, as typed by a user, as the parameter's type, and writes it again."""
+"""Reads a new value, as typed by a user, as the parameter's type, and writes it as a file has it.
+
+A file is YAML as rosparam reads it, or a ``<param>`` as roslaunch reads it.
+"""
 
 from __future__ import annotations
 
 import math
 import re
 
-from pytpc.values.scalars import ValueType, number_text, plain_value, type_of
+from pytpc.values.scalars import ValueType, number_text, plain_value, same_value, type_of
 
 _WORDS = (("true", "false"), ("on", "off"), ("yes", "no"))
 _TRUE, _FALSE = ("true", "on", "yes", "1"), ("false", "off", "no", "0")
+_LAUNCH_BOOLS = {"true": True, "1": True, "false": False, "0": False}
 _SAFE_PLAIN = re.compile(r"[A-Za-z_/][\w./-]*(?: [\w./-]+)*", re.ASCII)
 _NAMES: dict[ValueType, str] = {
     "bool": "true or false",
@@ -26,7 +30,6 @@ class Refused(ValueError):
     """A change that is refused; ``lineno`` is the line in question, counted from 1."""
 
     def __init__(self, message: str, lineno: int | None = None) -> None:
-        """See the class."""
         super().__init__(message)
         self.lineno = lineno
 
@@ -103,8 +106,7 @@ def yaml_text(value: object, given: str, old: str = "", style: str = "") -> str:
         return _quoted(value, style)
     if not isinstance(value, int | float):
         raise Refused(f"{type_of(value)} values cannot be written here")
-    read = plain_value(given.strip())
-    if type(read) is type(value) and (read == value or (read != read and value != value)):  # noqa: PLR0124
+    if same_value(plain_value(given.strip()), value):
         return given.strip()
     return number_text(value) if isinstance(value, float) else str(value)
 
@@ -137,13 +139,9 @@ def _escape(character: str) -> str:
     if character.isprintable():
         return character
     code = ord(character)
-    return (
-        f"\\x{code:02x}"
-        if code < 0x100
-        else f"\\u{code:04x}"
-        if code < 0x10000
-        else f"\\U{code:08x}"
-    )
+    if code < 0x100:
+        return f"\\x{code:02x}"
+    return f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
 
 
 def degrees_text(value: float) -> str | None:
@@ -161,3 +159,76 @@ def degrees_text(value: float) -> str | None:
             text = number_text(degrees)
             return text.removesuffix(".0")
     return None
+
+
+def launch_value(text: str, kind: str) -> object:
+    """What roslaunch makes of the text of a ``<param value=...>``.
+
+    Args:
+        text: after substitution.
+        kind: the attribute ``type``; ``auto`` where there is none.
+
+    Raises:
+        ValueError: it does not fit the type.
+    """
+    text = text.strip()
+    if kind == "auto":
+        return _looks_like(text)
+    if kind in ("str", "string"):
+        return text
+    if kind == "int":
+        return int(text)
+    if kind == "double":
+        return float(text)
+    if kind in ("bool", "boolean"):
+        if text.lower() not in _LAUNCH_BOOLS:
+            raise ValueError(f"{text} is not a bool")
+        return _LAUNCH_BOOLS[text.lower()]
+    if kind == "yaml":
+        return plain_value(text)
+    raise ValueError(f"unknown type {kind}")
+
+
+def _looks_like(text: str) -> object:
+    try:
+        if "." in text:
+            return float(text)
+        if "_" not in text:
+            return int(text)
+    except ValueError:
+        pass
+    return _LAUNCH_BOOLS[text.lower()] if text.lower() in ("true", "false") else text
+
+
+def launch_text(value: object, given: str, kind: str, old: str) -> str:
+    """A value as written in a ``<param>`` of this type, so that roslaunch reads it.
+
+    Args:
+        value: bool, int, float or text.
+        given: what was typed; it is kept where it reads as ``value``.
+        kind: the attribute ``type``; ``auto`` where there is none.
+        old: what stands there; of a bool its words are kept.
+
+    Raises:
+        Refused: no text of this type reads as the value.
+    """
+    texts = [given.strip()]
+    if isinstance(value, bool):
+        texts = ["1" if value else "0"] if old.strip() in ("0", "1") else []
+        texts += [bool_text(value, old), "true" if value else "false"]
+    elif isinstance(value, float):
+        texts += [number_text(value), repr(value)]
+    elif isinstance(value, int):
+        texts.append(str(value))
+    if kind == "yaml":
+        texts = [yaml_text(value, given, old)]
+    for text in texts:
+        try:
+            read = launch_value(text, kind)
+        except ValueError:
+            continue
+        if same_value(read, value):
+            return text
+    if kind == "auto":
+        raise Refused(f"roslaunch would read {given!r} as another type; give the tag a type")
+    raise Refused(f'{given!r} does not fit type="{kind}"')

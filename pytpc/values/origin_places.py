@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -23,67 +24,56 @@ class _Files:
     """The files that a launch file reads; each is read once."""
 
     def __init__(self) -> None:
-        self._bytes: dict[Path, bytes] = {}
-        self._lines: dict[Path, list[bytes]] = {}
-        self._texts: dict[Path, dict[int, tuple[int, int] | None]] = {}
-        self._yaml: dict[tuple[Path, int], dict[str, YamlSetting]] = {}
-        self._sources: dict[Path, Path | None] = {}
-
-    def data(self, path: Path) -> bytes:
-        """The content of a file; empty if it cannot be read."""
-        if path not in self._bytes:
-            try:
-                self._bytes[path] = path.read_bytes()
-            except OSError:
-                self._bytes[path] = b""
-        return self._bytes[path]
+        self.data = cache(_bytes_of)
+        self.source = cache(source_of)
+        self.settings = cache(self._settings)
+        self._lines = cache(lambda path: self.data(path).split(b"\n"))
+        self._texts = cache(self._texts_of)
 
     def line(self, path: Path, lineno: int) -> str:
         """A line without the white space around it."""
-        lines = self._lines.setdefault(path, self.data(path).split(b"\n"))
+        lines = self._lines(path)
         if not 0 < lineno <= len(lines):
             return ""
         return lines[lineno - 1].decode("utf-8", "replace").strip()
 
-    def source(self, path: Path) -> Path | None:
-        """See ``source_of``."""
-        if path not in self._sources:
-            self._sources[path] = source_of(path)
-        return self._sources[path]
-
     def text_of(self, launch: Path, offset: int) -> tuple[int, int] | None:
         """The span of the text of the tag that begins at a byte."""
-        if launch not in self._texts:
-            data = self.data(launch)
-            try:
-                tags = read_tags(data)
-            except ValueError:
-                tags = []
-            self._texts[launch] = {tag.offset: inner_text(tag, data) for tag in tags}
-        return self._texts[launch].get(offset)
+        return self._texts(launch).get(offset)
 
-    def settings(self, path: Path, start: int, end: int | None = None) -> dict[str, YamlSetting]:
+    def _texts_of(self, launch: Path) -> dict[int, tuple[int, int] | None]:
+        data = self.data(launch)
+        try:
+            return {tag.offset: inner_text(tag, data) for tag in read_tags(data)}
+        except ValueError:
+            return {}
+
+    def _settings(self, path: Path, start: int, end: int | None = None) -> dict[str, YamlSetting]:
         """The values that a YAML file, or a part of one, sets, by keys as ROS joins them.
 
         Nothing where it cannot be read.
         """
-        place = (path, start)
-        if place not in self._yaml:
-            piece = self.data(path)[start:end]
-            try:
-                documents = read_yaml(piece.decode("utf-8-sig" if start == 0 else "utf-8"))
-            except ValueError:
-                documents = []
-            found = settings(documents[0]) if documents else {}
-            self._yaml[place] = {_joined(keys): setting for keys, setting in found.items()}
-        return self._yaml[place]
+        piece = self.data(path)[start:end]
+        try:
+            documents = read_yaml(piece.decode("utf-8-sig" if start == 0 else "utf-8"))
+        except ValueError:
+            documents = []
+        found = settings(documents[0]) if documents else {}
+        return {_joined(keys): setting for keys, setting in found.items()}
+
+
+def _bytes_of(path: Path) -> bytes:
+    """The content of a file; empty if it cannot be read."""
+    try:
+        return path.read_bytes()
+    except OSError:
+        return b""
 
 
 class Places:
     """Turns the settings of a trace into origins."""
 
     def __init__(self, trace: Trace) -> None:
-        """See the class."""
         self._trace = trace
         self._files = _Files()
 
@@ -127,13 +117,14 @@ class Places:
     def _from_rosparam(self, name: str, setting: Mapping[str, Any], launch: Path) -> Origin:
         below = keys_below(name, str(setting.get("base", "/")))
         of_tag = int(setting["lineno"])
+        first = 0
         if setting.get("from") == "file":
-            path, first = Path(setting["yaml"]), 0
+            path = Path(setting["yaml"])
             known = self._files.settings(path, 0)
             unknown = self._at(name, path, None, setting)
             unknown = replace(unknown, kind="yaml", via=(*unknown.via, f"{launch}:{of_tag}"))
         else:
-            path, first = launch, 0
+            path = launch
             span = self._files.text_of(launch, int(setting["offset"]))
             known = {} if span is None else self._files.settings(path, *span)
             if span is not None:
@@ -147,7 +138,7 @@ class Places:
         if found.shared:
             note = f"it is written for more than this place ({found.shared})"
         elif setting.get("substituted") and "$(" in found.node.text:
-            note = "roslaunch puts something in here (subst_value)"
+            note = "roslaunch substitutes a part of it (subst_value)"
         text = self._files.line(path, lineno)
         return replace(unknown, lineno=lineno, text=text, note=note, keys=found.keys)
 
@@ -168,7 +159,7 @@ class Places:
             place = place.get("arguments", {}).get(name, {"tag": "unknown"})
         if place is setting:
             return replace(
-                origin, note=f"roslaunch works it out: {written}" if "$(" in written else ""
+                origin, note=f"roslaunch computes it: {written}" if "$(" in written else ""
             )
         if place["tag"] == _COMMAND_LINE:
             given = f"{name}:={place.get('value', '')} on roslaunch's command line"
@@ -178,7 +169,7 @@ class Places:
         path, lineno = Path(place["file"]), int(place["lineno"])
         note = f"<arg> {name}, which may be used elsewhere, too"
         if "$(" in str(place.get("written", "")):
-            note = f"roslaunch works out <arg> {name}: {place['written']}"
+            note = f"roslaunch computes <arg> {name}: {place['written']}"
         return replace(
             origin,
             path=path,

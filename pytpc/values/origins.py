@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Literal, cast, get_args
 
@@ -29,10 +29,10 @@ class Origin:
     a YAML file that a launch file loads, the launch file itself (``<param>``), an ``argument`` on
     roslaunch's command line, the default in the code (it is not set), set at ``runtime``.
     ``path`` and ``lineno`` are the place, ``text`` the source line; ``via`` the launch files on the
-    way to it, ``note`` a sentence about what is not certain. ``value`` is as on the server.
+    way to it, ``note`` a sentence about an uncertainty. ``value`` is that of the server.
 
     ``keys`` are the keys in a YAML file from the top, ``argument`` the launch argument whose value
-    this is, ``source`` the file of which ``path`` is an installed copy, ``overridden`` the places
+    this is, ``source`` the file that ``path`` is an installed copy of, ``overridden`` the places
     (``file:line``) that set it before and do not count, ``param_type`` the ``type`` of a
     ``<param>``.
     """
@@ -133,20 +133,12 @@ def write_origins(document: Mapping[str, Any], origins: Mapping[str, Origin], pa
 
 def as_json(origin: Origin) -> dict[str, object]:
     """The fields of an origin except its name, without empty ones."""
-    fields: dict[str, object] = {
-        "path": None if origin.path is None else str(origin.path),
-        "lineno": origin.lineno,
-        "text": origin.text,
-        "via": list(origin.via),
-        "note": origin.note,
-        "keys": list(origin.keys),
-        "argument": origin.argument,
-        "source": None if origin.source is None else str(origin.source),
-        "overridden": list(origin.overridden),
-        "param_type": origin.param_type,
-    }
-    kept = {field: value for field, value in fields.items() if value not in (None, "", [])}
-    return {"kind": origin.kind, "value": to_json(origin.value), **kept}
+    said = asdict(origin)
+    kind, value = said.pop("kind"), said.pop("value")
+    del said["name"]
+    given = {field: text for field, text in said.items() if text not in (None, "", ())}
+    shown = {field: str(x) if isinstance(x, Path) else x for field, x in given.items()}
+    return {"kind": kind, "value": to_json(value), **shown}
 
 
 def to_json(value: object) -> object:

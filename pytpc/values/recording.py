@@ -7,12 +7,14 @@ from dataclasses import replace
 from pathlib import Path
 
 from pytpc.base.errors import InputError, TpcError
+from pytpc.base.source_bytes import read_bytes
 from pytpc.values.origin_places import Places
 from pytpc.values.origins import ORIGINS_FILE, START_FILE, Origin, write_origins
+from pytpc.values.scalars import same_value
 from pytpc.values.trace import Trace, name_on_server, trace_launch
 from pytpc.values.yaml_tree import YamlNode, read_yaml, settings, value_of
 
-# What roslaunch and the master keep for themselves.
+# The parameters of roslaunch and the master themselves.
 OF_ROS = ("/rosdistro", "/rosversion", "/run_id", "/roslaunch", "/tcp_keepalive")
 NO_LAUNCH = "the graph was already running, and no launch file was given"
 BY_A_NODE = (
@@ -30,10 +32,7 @@ def read_parameters(path: Path) -> dict[str, object]:
         InputError: it cannot be read, or is not such a dump.
     """
     try:
-        text = path.read_text(encoding="utf-8")
-        documents = read_yaml(text)
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror}", path) from error
+        documents = read_yaml(read_bytes(path).decode())
     except ValueError as error:
         raise InputError(str(error), path) from error
     found = settings(documents[0]) if documents else {}
@@ -44,7 +43,7 @@ def _value(node: YamlNode) -> object:
     try:
         return value_of(node)
     except ValueError:
-        # Binary data and dates: what is written is all that is shown of them.
+        # Binary data and dates are shown as they are written.
         return node.text
 
 
@@ -94,19 +93,10 @@ def _origin(
         # A node has taken it away.
         note = f"{launched.words()} set it, and it was deleted at runtime"
         return Origin(name, "runtime", None, None, None, "", note=note)
-    if launched.value is None or _same(launched.value, value):
+    if launched.value is None or same_value(launched.value, value):
         return replace(launched, value=value)
     note = f"{launched.words()} set it to {launched.value!r}"
     return Origin(name, "runtime", value, None, None, "", launched.via, note)
-
-
-def _same(one: object, other: object) -> bool:
-    """Equal, of one type; NaN is NaN."""
-    if isinstance(one, float) and isinstance(other, float):
-        return one == other or (one != one and other != other)  # noqa: PLR0124
-    if isinstance(one, list) and isinstance(other, list):
-        return len(one) == len(other) and all(map(_same, one, other))
-    return type(one) is type(other) and one == other
 
 
 def try_trace(
@@ -135,8 +125,7 @@ def save_origins(
         reason: why there is no trace, empty where there is one.
         env: in which the launch file was read.
 
-    What goes wrong is the ``reason`` why no origin is known: the mission was flown.
-
+    An error becomes the ``reason`` why no origin is known: the mission was flown.
     Raises:
         TpcError: the file cannot be written.
     """
@@ -158,20 +147,6 @@ def save_origins(
         "env": {name: env[name] for name in _ENV_NAMES if name in env},
         "reason": reason,
         "files": {} if trace is None else dict(sorted(trace.files.items())),
-        "nodes": [] if trace is None else _nodes(trace),
+        "nodes": [] if trace is None else [node.to_json() for node in trace.nodes],
     }
     write_origins(document, origins, folder / ORIGINS_FILE)
-
-
-def _nodes(trace: Trace) -> list[dict[str, object]]:
-    return [
-        {
-            "name": node.name,
-            "package": node.package,
-            "program": node.program,
-            "path": str(node.path),
-            "lineno": node.lineno,
-            "offset": node.offset,
-        }
-        for node in trace.nodes
-    ]

@@ -1,7 +1,8 @@
 """Single values as YAML 1.1 and roslaunch write and read them.
 
-The rules are PyYAML's, which rosparam uses: ``1e5`` is a text there (a number needs a dot and a
-sign: ``1.0e+5``), ``on`` a bool, ``0x1F`` and ``012`` whole numbers.
+PyYAML reads them, as it does for rosparam: ``1e5`` is a text (a number needs a dot and a sign:
+``1.0e+5``), ``on`` is a bool, ``0x1F`` and ``012`` are whole numbers. rosparam adds the angles
+``deg()`` and ``rad()``.
 """
 
 from __future__ import annotations
@@ -10,29 +11,15 @@ import math
 import re
 from typing import Literal
 
+import yaml
+
 ValueType = Literal["bool", "int", "double", "string", "list", "map", "null", "binary"]
 
-_BOOLS = {
-    **dict.fromkeys(("yes", "true", "on"), True),
-    **dict.fromkeys(("no", "false", "off"), False),
-}
-_BOOL = re.compile(
-    r"yes|Yes|YES|no|No|NO|true|True|TRUE|false|False|FALSE|on|On|ON|off|Off|OFF", re.ASCII
-)
-_INT = re.compile(
-    r"[-+]?0b[0-1_]+|[-+]?0[0-7_]+|[-+]?(?:0|[1-9][0-9_]*)|[-+]?0x[0-9a-fA-F_]+"
-    r"|[-+]?[1-9][0-9_]*(?::[0-5]?[0-9])+",
-    re.ASCII,
-)
-_FLOAT = re.compile(
-    r"[-+]?(?:[0-9][0-9_]*)\.[0-9_]*(?:[eE][-+][0-9]+)?|\.[0-9][0-9_]*(?:[eE][-+][0-9]+)?"
-    r"|[-+]?[0-9][0-9_]*(?::[0-5]?[0-9])+\.[0-9_]*|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)",
-    re.ASCII,
-)
-_NULL = re.compile(r"~|null|Null|NULL|")
 _ANGLE = re.compile(r"(?:deg|rad)\([^)]*\)")
-_SEXAGESIMAL = 60
 _TAG = "tag:yaml.org,2002:"
+# Other types, as dates, are texts here: the parameter server has none of them.
+_TYPES = ("null", "bool", "int", "float")
+_RULES = yaml.SafeLoader("")
 
 
 def type_of(value: object) -> ValueType:
@@ -51,72 +38,48 @@ def type_of(value: object) -> ValueType:
     return "map" if isinstance(value, dict) else "binary"
 
 
+def same_value(one: object, other: object) -> bool:
+    """Whether two values are equal and of one type; NaN is NaN."""
+    if isinstance(one, float) and isinstance(other, float) and math.isnan(one):
+        return math.isnan(other)
+    if isinstance(one, list) and isinstance(other, list):
+        return len(one) == len(other) and all(map(same_value, one, other))
+    return type(one) is type(other) and one == other
+
+
 def plain_value(text: str, tag: str | None = None, *, quoted: bool = False) -> object:
     """The value of a scalar of YAML as rosparam reads it.
 
     Args:
         text: without quotes.
-        tag: one that is written before it.
+        tag: one that is written before it, as PyYAML gives it.
         quoted: a text in quotes is a text.
 
     Raises:
         ValueError: a tag that rosparam does not know, or a text that does not fit it.
     """
-    if tag is not None and tag != "!":
-        return _tagged(text, tag)
-    if quoted or tag == "!":
+    if tag == "!" or (tag is None and quoted):
         return text
-    for kind in ("null", "bool", "int", "float", "angle"):
-        if _PATTERNS[kind].fullmatch(text):
-            return _READERS[kind](text)
-    return text
+    if tag is not None:
+        return _tagged(text, tag)
+    if _ANGLE.fullmatch(text):
+        return _angle(text)
+    found = _RULES.resolve(yaml.ScalarNode, text, (True, False))
+    return _tagged(text, found) if found.removeprefix(_TAG) in _TYPES else text
 
 
 def _tagged(text: str, tag: str) -> object:
-    name = tag.removeprefix("!!").removeprefix(_TAG).removeprefix("!")
-    if name == "str":
+    kind = tag.removeprefix(_TAG).removeprefix("!")
+    if kind == "str":
         return text
-    reader = _READERS.get({"degrees": "angle", "radians": "angle"}.get(name, name))
-    if reader is None:
+    if kind in ("degrees", "radians"):
+        return _angle(text if _ANGLE.fullmatch(text.strip()) else f"{kind[:3]}({text})")
+    if kind not in _TYPES:
         raise ValueError(f"the tag {tag} is not supported")
-    if name in ("degrees", "radians") and not _ANGLE.fullmatch(text.strip()):
-        return reader(f"{name[:3]}({text})")
-    return reader(text)
-
-
-def _int(text: str) -> int:
-    digits = text.replace("_", "")
-    sign = -1 if digits.startswith("-") else 1
-    digits = digits.lstrip("+-")
-    if digits.startswith("0b"):
-        return sign * int(digits[2:], 2)
-    if digits.startswith("0x"):
-        return sign * int(digits[2:], 16)
-    if ":" in digits:
-        return sign * round(_base_60(digits))
-    return sign * int(digits, 8 if digits.startswith("0") and digits != "0" else 10)
-
-
-def _float(text: str) -> float:
-    digits = text.replace("_", "").lower()
-    sign = -1.0 if digits.startswith("-") else 1.0
-    digits = digits.lstrip("+-")
-    if digits == ".inf":
-        return sign * math.inf
-    if digits == ".nan":
-        return math.nan
-    return sign * (_base_60(digits) if ":" in digits else float(digits))
-
-
-def _base_60(digits: str) -> float:
-    total = 0.0
-    for part in digits.split(":"):
-        total = total * _SEXAGESIMAL + float(part)
-    return total
-
-
-def _bool(text: str) -> bool:
-    return _BOOLS[text.lower()]
+    try:
+        return _RULES.yaml_constructors[_TAG + kind](_RULES, yaml.ScalarNode(_TAG + kind, text))
+    except LookupError as error:
+        raise ValueError(f"{text!r} is no {kind}") from error
 
 
 def _angle(text: str) -> float:
@@ -147,14 +110,6 @@ def _sum_of(text: str) -> float:
             value = value / factor if divides else value * factor
         total += -value if sign == "-" else value
     return total
-
-
-def _null(_text: str) -> None:
-    return None
-
-
-_PATTERNS = {"null": _NULL, "bool": _BOOL, "int": _INT, "float": _FLOAT, "angle": _ANGLE}
-_READERS = {"null": _null, "bool": _bool, "int": _int, "float": _float, "angle": _angle}
 
 
 def number_text(value: float) -> str:

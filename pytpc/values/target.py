@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
+import filecmp
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from pytpc.base.errors import InputError
+from pytpc.base.source_bytes import read_bytes
 from pytpc.static.parameters import same_parameter
-from pytpc.values.apply import FileChange, decoded, read_file
+from pytpc.values.apply import FileChange, decoded
 from pytpc.values.installed import is_installed, of_the_system, source_of
 from pytpc.values.journal import digest
-from pytpc.values.launch_edit import (
-    LaunchEdit,
-    NewText,
-    add_param,
-    edit_argument,
-    edit_inline,
-    edit_param,
-)
+from pytpc.values.launch_edit import NewText, add_param, edit_argument, edit_inline, edit_param
 from pytpc.values.launch_xml import read_tags
 from pytpc.values.new_value import Refused, guessed, read_value
 from pytpc.values.origin_places import IN_ARGS
@@ -26,7 +21,7 @@ from pytpc.values.origins import ORIGINS_FILE, Origin, origins_file, read_docume
 from pytpc.values.recording import leaves, origins_of
 from pytpc.values.scalars import type_of
 from pytpc.values.trace import LaunchNode, trace_launch
-from pytpc.values.yaml_edit import all_settings, edit_yaml
+from pytpc.values.yaml_edit import Edit, all_settings, edit_yaml
 
 _YAML = (".yaml", ".yml")
 _LISTED = 8
@@ -52,7 +47,7 @@ def is_yaml(path: Path) -> bool:
 
 
 def read_target(path: Path, args: Mapping[str, str], env: Mapping[str, str]) -> Target:
-    """What is known of a mission's folder, its bag, or a launch file.
+    """Read the origins and nodes of a mission, given by its folder or bag, or of a launch file.
 
     Args:
         path: of one of them.
@@ -86,17 +81,7 @@ def _of_mission(path: Path) -> Target:
     file = origins_file(path)
     document = read_document(file)
     try:
-        nodes = [
-            LaunchNode(
-                str(node["name"]),
-                str(node["package"]),
-                str(node["program"]),
-                Path(node["path"]),
-                int(node["lineno"]),
-                int(node["offset"]),
-            )
-            for node in document.get("nodes", [])
-        ]
+        nodes = [LaunchNode.of(node) for node in document.get("nodes", [])]
         files = {str(name): str(value) for name, value in document.get("files", {}).items()}
     except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise InputError(f"not a file of origins: {error!r}", file) from error
@@ -146,7 +131,7 @@ def plan_yaml(path: Path, parameter: str, given: str, *, force: bool = False) ->
         InputError: the file cannot be read, or the change is refused; with the line.
     """
     real = path.resolve()
-    data = read_file(real)
+    data = read_bytes(real)
     text = decoded(data, path)
     try:
         wanted = parameter.strip("~/")
@@ -157,14 +142,13 @@ def plan_yaml(path: Path, parameter: str, given: str, *, force: bool = False) ->
         if len(meant) != 1:
             names = _listed(["/".join(keys) for keys in meant])
             what = f"several values end with {parameter}: {names}" if meant else ""
-            raise Refused(what or f"{parameter} does not stand in it")
+            raise Refused(what or f"{parameter} is not in the file")
         edit = edit_yaml(text, meant[0], given, force=force)
     except Refused as error:
         raise InputError(str(error), path, error.lineno) from error
     notes = (*edit.notes, *_where(path, real))
     name = "/" + "/".join(meant[0])
-    after = edit.text.encode("utf-8")
-    return FileChange(name, real, data, after, edit.old, edit.new, edit.lineno, notes)
+    return FileChange(name, real, data, edit.data, edit.old, edit.new, edit.lineno, notes)
 
 
 def plan_origin(
@@ -197,31 +181,22 @@ def plan_origin(
             file,
         )
     real = file.resolve()
-    data = read_file(real)
+    data = read_bytes(real)
     try:
         if origin.kind == "yaml":
             edit = edit_yaml(decoded(data, file), origin.keys, given, force=force)
-            after, found = (
-                edit.text.encode("utf-8"),
-                LaunchEdit(b"", edit.old, edit.new, edit.lineno, edit.notes),
-            )
         else:
             as_then = (files or {}).get(str(path), digest(data)) == digest(data)
-            found = _edit_launch(data, origin, given, force, as_then=as_then)
-            after = found.data
+            edit = _edit_launch(data, origin, given, force, as_then=as_then)
     except Refused as error:
         raise InputError(str(error), file, error.lineno) from error
-    notes = [*found.notes, *_where(path, real)]
-    if origin.value is not None and repr(origin.value) != repr(found.old):
-        notes.append(f"the robot had {origin.value!r}; the file was changed since")
-    return FileChange(
-        origin.name, real, data, after, found.old, found.new, found.lineno, tuple(notes)
-    )
+    notes = (*edit.notes, *_where(path, real))
+    if origin.value is not None and repr(origin.value) != repr(edit.old):
+        notes += (f"the robot had {origin.value!r}; the file was changed since",)
+    return FileChange(origin.name, real, data, edit.data, edit.old, edit.new, edit.lineno, notes)
 
 
-def _edit_launch(
-    data: bytes, origin: Origin, given: str, force: bool, *, as_then: bool
-) -> LaunchEdit:
+def _edit_launch(data: bytes, origin: Origin, given: str, force: bool, *, as_then: bool) -> Edit:
     lineno = (origin.lineno or 0) if as_then else 0
     if origin.argument:
         via = [
@@ -262,7 +237,7 @@ def plan_addition(origin: Origin, target: Target, given: str, default: object = 
         raise InputError("the launch file is not known; give that instead of the mission")
     file = source_of(path) or path
     real = file.resolve()
-    data = read_file(real)
+    data = read_bytes(real)
     known = origin.value if origin.value is not None else default
     try:
         value = guessed(given) if known is None else read_value(given, type_of(known))
@@ -310,36 +285,22 @@ def _why_not(origin: Origin) -> str:
 
 def _where(path: Path, real: Path) -> tuple[str, ...]:
     """Notes on the file that a change goes to."""
-    return (*_copies(path, real), *_other_names(real))
-
-
-def _other_names(real: Path) -> tuple[str, ...]:
-    try:
-        others = real.stat().st_nlink - 1
-    except OSError:
-        others = 0
-    if others < 1:
-        return ()
-    return (f"{others} other names (hard links) of this file keep the old text",)
-
-
-def _copies(path: Path, real: Path) -> tuple[str, ...]:
+    notes = []
     if path.resolve() != real:
-        differs = "" if _same_bytes(path, real) else ", which is older or newer than it"
-        return (
+        same = path.is_file() and filecmp.cmp(path, real, shallow=False)
+        differs = "" if same else ", which is older or newer than it"
+        notes.append(
             f"the robot reads the installed copy {path}{differs}: build the workspace again for"
-            " the change to reach it",
+            " the change to reach it"
         )
-    if is_installed(real):
-        return ("this is an installed copy, and no source of it is found: a build overwrites it",)
-    return ()
-
-
-def _same_bytes(one: Path, other: Path) -> bool:
-    try:
-        return one.read_bytes() == other.read_bytes()
-    except OSError:
-        return False
+    elif is_installed(real):
+        notes.append(
+            "this is an installed copy, and no source of it is found: a build overwrites it"
+        )
+    others = real.stat().st_nlink - 1
+    if others > 0:
+        notes.append(f"{others} other names (hard links) of this file keep the old text")
+    return tuple(notes)
 
 
 def _listed(names: Sequence[str]) -> str:

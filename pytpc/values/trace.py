@@ -1,4 +1,4 @@
-"""The values that a launch file sets, and which line of which file sets each.
+"""The values that a launch file sets, each with the file and line that sets it.
 
 ``trace_launch`` runs ``pytpc.values.tracer.launch_tracer`` with roslaunch's own Python, and
 ``pytpc.values.origin_places`` turns what that says into places.
@@ -11,17 +11,18 @@ import re
 import shutil
 import subprocess
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 from pytpc.base.errors import InputError, MissingToolError, RunError
-from pytpc.values import launch_tracer_path
 
+# It runs with roslaunch's Python, so it is not imported.
+_TRACER = Path(__file__).with_name("tracer") / "launch_tracer.py"
 _PATIENCE_S = 60.0
 _SHEBANG_BYTES = 256
 _LONGEST = 600
-# What launch_tracer puts for the random part of $(anon x).
+# The word of launch_tracer for the random part of $(anon x).
 _ANONYMOUS = "__tpc_anon"
 
 
@@ -35,6 +36,15 @@ class LaunchNode:
     path: Path
     lineno: int
     offset: int
+
+    @classmethod
+    def of(cls, fields: Mapping[str, Any]) -> LaunchNode:
+        """The node with these fields, as in JSON."""
+        return cls(**{**fields, "path": Path(fields["path"])})
+
+    def to_json(self) -> dict[str, object]:
+        """The fields; ``of`` reads them."""
+        return {**asdict(self), "path": str(self.path)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +64,7 @@ class Trace:
 
     @property
     def by_roslaunch(self) -> set[str]:
-        """What roslaunch sets before any node runs; nodes set what is in their args themselves."""
+        """The parameters that roslaunch sets before nodes run; nodes set those in their args."""
         return {
             name
             for name, settings in self.settings.items()
@@ -107,7 +117,7 @@ def trace_launch(
     if not launch.is_file():
         raise InputError("no such launch file", launch)
     given = [f"{name}:={value}" for name, value in sorted(args.items())]
-    command = [roslaunch_python(env), str(launch_tracer_path()), str(launch.absolute()), *given]
+    command = [roslaunch_python(env), str(_TRACER), str(launch.absolute()), *given]
     try:
         ran = subprocess.run(
             command,
@@ -126,25 +136,12 @@ def trace_launch(
                 f"{command[0]} has no roslaunch; install it with: apt-get install python3-roslaunch"
             )
         why = said[-1] if said else "no reason"
-        # Of includes without an end roslaunch names each.
+        # roslaunch names each include of an endless chain.
         why = why if len(why) <= _LONGEST else f"{why[: _LONGEST // 2]} ... {why[-_LONGEST // 2 :]}"
         raise InputError(f"roslaunch cannot read it: {why}", launch)
-    return _trace(launch.absolute(), args, json.loads(ran.stdout))
-
-
-def _trace(launch: Path, args: Mapping[str, str], answer: Mapping[str, Any]) -> Trace:
-    nodes = [
-        LaunchNode(
-            node["name"],
-            node["pkg"],
-            node["type"],
-            Path(node["file"]),
-            node["lineno"],
-            node["offset"],
-        )
-        for node in answer["nodes"]
-    ]
-    return Trace(launch, dict(args), answer["parameters"], nodes, answer["files"])
+    answer = json.loads(ran.stdout)
+    nodes = [LaunchNode.of(node) for node in answer["nodes"]]
+    return Trace(launch.absolute(), dict(args), answer["parameters"], nodes, answer["files"])
 
 
 def name_on_server(name: str, on_server: Collection[str]) -> str:

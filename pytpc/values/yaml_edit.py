@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from pytpc.values.new_value import Refused, degrees_text, guessed, read_value, yaml_text
-from pytpc.values.scalars import number_text, type_of
+from pytpc.values.scalars import number_text, same_value, type_of
 from pytpc.values.yaml_tree import YamlNode, YamlSetting, read_yaml, settings, value_of
 
 Keys = tuple[str, ...]
@@ -18,10 +18,9 @@ _LISTED = 5
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """A change of one value in a text: what it was and is, in which line, what else to know."""
+    """A change of one value: the file after it, what it was and is, its line, what else to know."""
 
-    text: str
-    keys: Keys
+    data: bytes
     old: object
     new: object
     lineno: int
@@ -55,8 +54,8 @@ def edit_yaml(text: str, keys: Keys, given: str, *, force: bool = False) -> Edit
     documents = all_settings(text)
     having = [document for document in documents if keys in document]
     if len(having) != 1:
-        where = "nowhere" if not having else f"in {len(having)} documents"
-        raise Refused(f"{'/'.join(keys)} stands {where} in it")
+        where = f"in {len(having)} documents of the file" if having else "not in the file"
+        raise Refused(f"{'/'.join(keys)} is {where}")
     setting = having[0][keys]
     node, spot = setting.node, setting.written
     if spot.kind != "alias" or node.kind == "list":
@@ -64,7 +63,7 @@ def edit_yaml(text: str, keys: Keys, given: str, *, force: bool = False) -> Edit
     old = _read(node)
     if "$(" in node.text and not force:
         raise Refused(
-            f"roslaunch puts something in here: {node.text}; --force replaces it", node.lineno
+            f"roslaunch substitutes a part of it: {node.text}; --force replaces it", node.lineno
         )
     notes = _notes(having[0], setting, spot, force)
     pieces: list[tuple[YamlNode, str]]
@@ -72,7 +71,7 @@ def edit_yaml(text: str, keys: Keys, given: str, *, force: bool = False) -> Edit
     if isinstance(old, list):
         pieces, new = _list_pieces(node, given, force)
     else:
-        # Of what roslaunch puts in the type is not known.
+        # The type of what roslaunch substitutes is not known.
         worked_out = "$(" in node.text
         new = guessed(given) if worked_out else read_value(given, type_of(old), force=force)
         piece, more = _piece(node, new, given)
@@ -82,7 +81,7 @@ def edit_yaml(text: str, keys: Keys, given: str, *, force: bool = False) -> Edit
         text = _put(text, one, piece)
     changed = _changed_with(having[0], spot)
     _check(documents, text, {(documents.index(having[0]), keys): new for keys in changed})
-    return Edit(text, keys, old, new, spot.lineno, tuple(notes))
+    return Edit(text.encode(), old, new, spot.lineno, tuple(notes))
 
 
 def _changed_with(document: Mapping[Keys, YamlSetting], spot: YamlNode) -> list[Keys]:
@@ -93,7 +92,7 @@ def _changed_with(document: Mapping[Keys, YamlSetting], spot: YamlNode) -> list[
 def _notes(
     document: Mapping[Keys, YamlSetting], setting: YamlSetting, spot: YamlNode, force: bool
 ) -> list[str]:
-    """What else to know of a change.
+    """Notes on a change.
 
     Raises:
         Refused: other parameters share the text of the value, and ``force`` is not given.
@@ -154,7 +153,7 @@ def _list_pieces(
         raise Refused("the parameter is a list: give all of it, as in '[1.0, 2.0]'", node.lineno)
     if len(wanted) != len(node.items):
         had = len(node.items)
-        raise Refused(f"the list has {had} values, and {len(wanted)} are given", node.lineno)
+        raise Refused(f"the list has {had} values, but {len(wanted)} were given", node.lineno)
     pieces: list[tuple[YamlNode, str]] = []
     new: list[object] = []
     for item, one in zip(node.items, wanted, strict=True):
@@ -163,7 +162,7 @@ def _list_pieces(
         old = _read(item)
         value = read_value(one.text, type_of(old), force=force)
         new.append(value)
-        if value != old or type(value) is not type(old):
+        if not same_value(value, old):
             piece, _ = _piece(item, value, one.text)
             pieces.append((item, piece))
     return pieces, new

@@ -12,12 +12,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from ruamel.yaml import YAML
-from ruamel.yaml.error import MarkedYAMLError, YAMLError
+import yaml
 
 from pytpc.values.scalars import plain_value
 
-# ruamel's classes of events, which differ in their fields.
+# PyYAML's classes of events, which differ in their fields.
 _Event = Any
 _MERGE = "<<"
 _MERGE_TAG = "tag:yaml.org,2002:merge"
@@ -60,7 +59,7 @@ class YamlNode:
 class YamlSetting:
     """A value in a tree of maps: its keys from the top and its node.
 
-    ``key`` is the node of the last key. ``written`` is what stands behind it: the node itself, or
+    ``key`` is the node of the last key. ``written`` is the text after it: the node itself, or
     an alias of it. ``shared`` says how the value is written for more than this
     place: ``alias`` (``*x``), ``merge`` (``<<``) or empty. ``earlier`` are lines with the same
     keys, which this one overrides.
@@ -81,12 +80,12 @@ def read_yaml(text: str) -> list[YamlNode]:
         ValueError: the text is not YAML; the message has the line.
     """
     try:
-        return list(_documents(YAML(typ="rt", pure=True).parse(text), text))
-    except MarkedYAMLError as error:
+        return list(_documents(yaml.parse(text, yaml.SafeLoader), text))
+    except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         where = f" in line {mark.line + 1}" if mark is not None else ""
         raise ValueError(f"not YAML{where}: {error.problem or error.context}") from error
-    except (YAMLError, RecursionError, ValueError) as error:
+    except (yaml.YAMLError, RecursionError, ValueError) as error:
         raise ValueError(f"not YAML: {' '.join(str(error).split())}") from error
 
 
@@ -133,7 +132,7 @@ def _node(
 
 
 def _skip_properties(node: YamlNode, text: str) -> None:
-    """Put the start behind ``&anchor`` and ``!tag``."""
+    """Move the start past ``&anchor`` and ``!tag``."""
     while node.start < node.end and text[node.start] in "&!" and (node.anchor or node.tag):
         while node.start < node.end and not text[node.start].isspace():
             node.start += 1
@@ -202,7 +201,7 @@ def _last_pairs(node: YamlNode, open_maps: tuple[int, ...] = ()) -> dict[str, _P
             earlier = () if before is None else (*before.earlier, before.key.lineno)
             own[key.behind.text] = _Pair(key, value, earlier=earlier)
     pairs: dict[str, _Pair] = {}
-    # Of several merged maps the first holds.
+    # The first of several merged maps holds.
     for below in reversed(merged):
         if id(below) not in open_maps:
             for name, pair in _last_pairs(below, (*open_maps, id(node))).items():

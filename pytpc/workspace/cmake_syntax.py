@@ -7,7 +7,6 @@ only warns about (arguments without white space between them) is no fault here e
 
 from __future__ import annotations
 
-import contextlib
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -104,24 +103,8 @@ def find_fault(data: bytes) -> SyntaxFault | None:
     """
     if data.startswith(_OTHER_BOMS):
         return SyntaxFault(1, "the byte order mark is not that of UTF-8")
-    parser = _Parser(list(tokens(data.removeprefix(UTF8_BOM))))
-    try:
-        parser.file()
-    except _FaultError as error:
-        return error.fault
-    return _nesting_fault(parser.commands)
-
-
-def command_names(data: bytes) -> list[tuple[str, int]]:
-    """The commands that stand in a list file: names in lower case, each with its line.
-
-    Commands that only variables or included files give are not among them, nor is anything behind
-    a fault in the file.
-    """
-    parser = _Parser(list(tokens(data.removeprefix(UTF8_BOM))))
-    with contextlib.suppress(_FaultError):
-        parser.file()
-    return parser.commands
+    found, fault = _parse(data)
+    return fault or _nesting_fault(found)
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,18 +121,25 @@ class Command:
 
     name: str
     line: int
-    arguments: tuple[Argument, ...]
+    arguments: list[Argument]
 
 
 def commands(data: bytes) -> list[Command]:
-    """The commands that stand in a list file, as `command_names` has them, with their arguments."""
-    parser = _Parser(list(tokens(data.removeprefix(UTF8_BOM))))
-    with contextlib.suppress(_FaultError):
-        parser.file()
-    return [
-        Command(name, line, tuple(map(_argument, pieces)))
-        for (name, line), pieces in zip(parser.commands, parser.pieces, strict=True)
-    ]
+    """The commands of a list file, up to a fault in it.
+
+    Commands that only variables or included files give are not among them.
+    """
+    return _parse(data)[0]
+
+
+def _parse(data: bytes) -> tuple[list[Command], SyntaxFault | None]:
+    found: list[Command] = []
+    try:
+        for command in _parsed(tokens(data.removeprefix(UTF8_BOM))):
+            found.append(command)
+    except _FaultError as error:
+        return found, error.fault
+    return found, None
 
 
 def _argument(token: Token) -> Argument:
@@ -172,79 +162,57 @@ class _FaultError(Exception):
         self.fault = SyntaxFault(line, message)
 
 
-class _Parser:
-    """Recursive descent over the token list; ``commands`` gathers (name, line) in order.
+def _parsed(stream: Iterator[Token]) -> Iterator[Command]:
+    """The commands, each before its arguments are read: a fault may be in these."""
+    line_is_fresh = True
+    for token in stream:
+        match token.kind:
+            case Kind.NEWLINE:
+                line_is_fresh = True
+            case Kind.SPACE | Kind.LINE_COMMENT:
+                pass
+            case Kind.BRACKET_COMMENT:
+                line_is_fresh = False
+            case Kind.IDENTIFIER if line_is_fresh:
+                shown = token.text.decode("ascii")
+                _open(token.line, shown, stream)
+                command = Command(shown.lower(), token.line, [])
+                yield command
+                command.arguments.extend(_arguments(token.line, shown, stream))
+                line_is_fresh = False
+            case Kind.IDENTIFIER:
+                raise _FaultError(token.line, f"expected a new line before {_quoted(token.text)}")
+            case _:
+                raise _unexpected("expected a command name", token)
 
-    ``pieces`` has the arguments of each, parentheses among them left out.
-    """
 
-    def __init__(self, stream: list[Token]) -> None:
-        self.stream = stream
-        self.at = 0
-        self.commands: list[tuple[str, int]] = []
-        self.pieces: list[list[Token]] = []
+def _open(line: int, shown: str, stream: Iterator[Token]) -> None:
+    opening = next((token for token in stream if token.kind is not Kind.SPACE), None)
+    if opening is None:
+        raise _FaultError(line, f'expected "(" after {shown}, found the end of the file')
+    if opening.kind is not Kind.OPEN:
+        raise _unexpected(f'expected "(" after {shown}', opening)
 
-    def file(self) -> None:
-        line_is_fresh = True
-        while self.at < len(self.stream):
-            token = self._take()
-            match token.kind:
-                case Kind.NEWLINE:
-                    line_is_fresh = True
-                case Kind.SPACE | Kind.LINE_COMMENT:
-                    pass
-                case Kind.BRACKET_COMMENT:
-                    line_is_fresh = False
-                case Kind.IDENTIFIER if line_is_fresh:
-                    self._command(token)
-                    line_is_fresh = False
-                case Kind.IDENTIFIER:
-                    raise _FaultError(
-                        token.line, f"expected a new line before {_quoted(token.text)}"
-                    )
-                case _:
-                    raise _unexpected("expected a command name", token)
 
-    def _command(self, name: Token) -> None:
-        shown = name.text.decode("ascii")
-        while self._peek() is Kind.SPACE:
-            self.at += 1
-        if self._peek() is None:
-            raise _FaultError(name.line, f'expected "(" after {shown}, found the end of the file')
-        opening = self._take()
-        if opening.kind is not Kind.OPEN:
-            raise _unexpected(f'expected "(" after {shown}', opening)
-        self.commands.append((shown.lower(), name.line))
-        self.pieces.append([])
-        self._arguments(name.line, shown)
-
-    def _arguments(self, line: int, shown: str) -> None:
-        depth = 1
-        before = Kind.SPACE
-        while self.at < len(self.stream):
-            token = self._take()
-            match token.kind:
-                case Kind.OPEN:
-                    depth += 1
-                case Kind.CLOSE:
-                    depth -= 1
-                    if depth == 0:
-                        return
-                case kind if kind in _PIECES:
-                    _check_separation(before, token)
-                    self.pieces[-1].append(token)
-                case Kind.OPEN_STRING | Kind.OPEN_BRACKET | Kind.BAD:
-                    raise _unexpected(f"in the arguments of {shown}", token)
-            before = token.kind
-        raise _FaultError(line, f'the "(" of {shown} is never closed')
-
-    def _peek(self) -> Kind | None:
-        return self.stream[self.at].kind if self.at < len(self.stream) else None
-
-    def _take(self) -> Token:
-        token = self.stream[self.at]
-        self.at += 1
-        return token
+def _arguments(line: int, shown: str, stream: Iterator[Token]) -> Iterator[Argument]:
+    """The arguments up to the closing parenthesis; parentheses among them are left out."""
+    depth = 1
+    before = Kind.SPACE
+    for token in stream:
+        match token.kind:
+            case Kind.OPEN:
+                depth += 1
+            case Kind.CLOSE:
+                depth -= 1
+                if depth == 0:
+                    return
+            case kind if kind in _PIECES:
+                _check_separation(before, token)
+                yield _argument(token)
+            case Kind.OPEN_STRING | Kind.OPEN_BRACKET | Kind.BAD:
+                raise _unexpected(f"in the arguments of {shown}", token)
+        before = token.kind
+    raise _FaultError(line, f'the "(" of {shown} is never closed')
 
 
 def _token_at(text: bytes, at: int, line: int) -> Token:
@@ -289,10 +257,10 @@ def _quoted(text: bytes) -> str:
     return '"' + "".join(c if c.isprintable() else f"\\x{ord(c):02x}" for c in shown) + '"'
 
 
-def _nesting_fault(commands: list[tuple[str, int]]) -> SyntaxFault | None:
+def _nesting_fault(found: list[Command]) -> SyntaxFault | None:
     """Blocks must be closed by their own end, and else() comes once and last in an if()."""
     opened: list[tuple[str, int]] = []
-    for name, line in commands:
+    for name, line in ((command.name, command.line) for command in found):
         if name in _BLOCKS:
             opened.append((name, line))
         elif name in ("else", "elseif"):
@@ -304,14 +272,10 @@ def _nesting_fault(commands: list[tuple[str, int]]) -> SyntaxFault | None:
             block = name.removeprefix("end")
             inner = opened.pop() if opened else ("", 0)
             if {"else": "if"}.get(inner[0], inner[0]) != block:
-                missing = f"{inner[0]}() of line {inner[1]} is still open" if inner[1] else ""
-                return SyntaxFault(line, f"{name}() without {block}()" + _reason(missing))
+                missing = f": {inner[0]}() of line {inner[1]} is still open" if inner[1] else ""
+                return SyntaxFault(line, f"{name}() without {block}(){missing}")
     if opened:
         name, line = opened[-1]
         block = {"else": "if"}.get(name, name)
         return SyntaxFault(line, f"{block}() is never closed by end{block}()")
     return None
-
-
-def _reason(text: str) -> str:
-    return f": {text}" if text else ""

@@ -5,11 +5,9 @@ The user's own build, install and log folders are not touched: everything goes i
 
 from __future__ import annotations
 
-import contextlib
 import os
 import re
 import shutil
-import signal
 import subprocess
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -18,7 +16,7 @@ from pathlib import Path
 
 from pytpc.base.errors import RunError, WorkspaceError
 from pytpc.base.paths import MERGED_FILE, OWN_FOLDER, search_path
-from pytpc.base.signals import signals_end
+from pytpc.base.signals import end_group, signals_end
 from pytpc.workspace.packages import Package
 
 _TAIL_LINES = 25
@@ -52,7 +50,7 @@ class Bases:
 
     @property
     def install(self) -> Path:
-        """What the nodes are run from; see ``workspace_env``."""
+        """The folder from which nodes are run; see ``workspace_env``."""
         return self.root / "install"
 
     @property
@@ -68,10 +66,10 @@ class Bases:
 
 @dataclass(frozen=True, slots=True)
 class BuildOptions:
-    """How a workspace is to be built.
+    """How to build a workspace.
 
     Attributes:
-        packages: names; these and what they need are built, or all where empty.
+        packages: names; these and the packages that they need are built. Empty: all.
         build_type: CMAKE_BUILD_TYPE.
         rules: the user's own rules, in addition to those of TPC.
         cmake_args: further arguments for each package's CMake.
@@ -79,10 +77,10 @@ class BuildOptions:
         constants: report comparisons with constants, too.
         tests: analyse test programs and scripts in folders of tests, and have them report.
         fallback: build a package without TPC if it does not build with TPC.
-        retry: try the packages again that earlier builds left alone.
-        python: analyse Python nodes; without, those of an earlier build are forgotten.
+        retry: build packages with TPC again that earlier builds left alone.
+        python: analyse Python nodes; if false, those of an earlier build are forgotten.
         python_rules: the user's own rules for Python.
-        bases: where everything is put; None: ``.tpc`` in the workspace.
+        bases: the folders of the build; None: ``.tpc`` in the workspace.
     """
 
     packages: Sequence[str] = ()
@@ -100,7 +98,7 @@ class BuildOptions:
 
 
 PLAIN_BUILD = BuildOptions()
-"""All settings as they are where nobody says otherwise."""
+"""The default settings."""
 
 
 class BuildError(RunError):
@@ -156,15 +154,15 @@ def colcon_command(
         "-DPYTHON_EXECUTABLE=/usr/bin/python3",
         *options.cmake_args,
     ]
-    # Of several --cmake-args the last one counts, so each of the user's has to begin with ours.
+    # Only the last of several --cmake-args counts, so each of the user's begins with ours.
     further: list[str] = []
     for argument in colcon_args:
         further += for_cmake if argument == "--cmake-args" else [argument]
     names = list(options.packages)
     if "--cmake-args" not in colcon_args:
         further += for_cmake
-    # Colcon takes an option that it does not know for a value of the option before it, so what
-    # the user gives stands where there is none and a slip of his is an error.
+    # Colcon takes an unknown option for a value of the option before it. The user's options come
+    # where no option is before them, so a misspelt one is an error.
     return [
         "colcon",
         "--log-base",
@@ -184,10 +182,9 @@ def colcon_command(
 
 
 def build_environment() -> dict[str, str]:
-    """The caller's environment without his Python's and make's, the system's programs first.
+    """The caller's environment without its Python's and make's settings; system programs first.
 
-    Under ``make -j`` the job server's pipe does not reach us, and a make below would run one job.
-    """
+    The pipe of the job server of ``make -j`` does not reach us: a make below would run one job."""
     own = {"PYTHONHOME", "VIRTUAL_ENV", "PATH", "MAKELEVEL", "MFLAGS"}
     if "--jobserver" in os.environ.get("MAKEFLAGS", ""):
         own.add("MAKEFLAGS")
@@ -214,7 +211,7 @@ def run_colcon(
 
     status = run_lines(command, workspace, build_environment(), hear)
     if status != 0 and shutil.disk_usage(bases.root).free < _FULL:
-        # No fault of a package, and colcon stumbles over it in many ways.
+        # No package is at fault, and colcon fails in many ways.
         raise RunError("the disk is full; free some space and build again", bases.root)
     latest = _latest_log(bases)
     if latest is not None and latest != before:
@@ -230,12 +227,12 @@ def run_lines(
     environment: Mapping[str, str],
     on_line: Callable[[str], None],
 ) -> int:
-    """Run a program and all below it, which end with us; returns its status.
+    """Run a program and return its status; it and its children end when this process ends.
 
     Args:
         command: the program and its arguments.
         folder: where it runs.
-        environment: all of it.
+        environment: the whole environment.
         on_line: called with each line of both its outputs, without white space at the end.
     """
     with (
@@ -256,19 +253,10 @@ def run_lines(
             for line in process.stdout or ():
                 on_line(line.rstrip())
         except BaseException:
-            _end_group(process)
+            # SIGINT first: colcon then records what it did not build.
+            end_group(process, 10, 5)
             raise
     return process.returncode
-
-
-def _end_group(process: subprocess.Popen[str]) -> None:
-    """End colcon and the compilers below it, gently first: colcon then records what it left."""
-    for end, patience in ((signal.SIGINT, 10), (signal.SIGTERM, 5), (signal.SIGKILL, None)):
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(process.pid, end)
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            process.wait(timeout=patience)
-            return
 
 
 def _latest_log(bases: Bases) -> Path | None:
@@ -294,7 +282,7 @@ def ended_jobs(events: str) -> dict[str, str]:
 def _raise_for_failed_package(log: Path) -> None:
     events = log / "events.log"
     if not events.is_file():
-        # colcon ended before the first package, and says itself why.
+        # colcon ended before the first package, and says why.
         return
     jobs = ended_jobs(events.read_text("utf-8", "replace"))
     finished = frozenset(name for name, status in jobs.items() if status == "0")

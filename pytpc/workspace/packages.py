@@ -11,6 +11,7 @@ from typing import Any
 from xml.parsers import expat
 
 from pytpc.base.errors import InputError, MissingToolError, WorkspaceError
+from pytpc.base.source_bytes import read_bytes
 from pytpc.workspace.cmake_syntax import find_fault
 
 MANIFEST = "package.xml"
@@ -24,7 +25,7 @@ PRODUCT_MARKERS = frozenset({".built_by", ".catkin", ".colcon_install_layout"})
 class Package:
     """A package: its name, its folder, and the build type of its manifest (``catkin``, ...).
 
-    ``needs`` are the names of the packages without which it is neither built nor run.
+    ``needs`` are the names of the packages that it needs to be built or run.
     """
 
     name: str
@@ -40,7 +41,7 @@ class Package:
 
 @dataclass(frozen=True, slots=True)
 class Manifest:
-    """What a package.xml says: names of other packages, in its order, conditions evaluated.
+    """The contents of a package.xml: names of other packages, in its order, conditions evaluated.
 
     ``build_depends`` are needed to build the package, ``run_depends`` to run it, ``test_depends``
     for its tests.
@@ -54,7 +55,7 @@ class Manifest:
 
     @property
     def needs(self) -> tuple[str, ...]:
-        """What has to be built before it, as colcon and catkin order packages."""
+        """The packages that are built before it, as colcon and catkin order them."""
         return tuple(dict.fromkeys((*self.build_depends, *self.run_depends)))
 
 
@@ -73,7 +74,10 @@ def find_packages(workspace: Path) -> list[Package]:
     """
     if not workspace.is_dir():
         raise WorkspaceError("no such folder", workspace)
-    packages = [_read_package(folder) for folder in package_folders(workspace)]
+    packages = []
+    for folder in package_folders(workspace):
+        manifest = read_manifest(folder)
+        packages.append(Package(manifest.name, folder, manifest.build_type, manifest.needs))
     if not packages:
         raise WorkspaceError(f"no packages here: no {MANIFEST} in this folder or below", workspace)
     by_name: dict[str, Package] = {}
@@ -102,9 +106,9 @@ def select_packages(packages: Sequence[Package], names: Iterable[str]) -> list[P
 
 
 def packages_up_to(packages: Sequence[Package], names: Iterable[str]) -> list[Package]:
-    """The packages with these names and what they need of ``packages``; all without a name.
+    """The packages with these names, and those that they need; all if no name is given.
 
-    That is what colcon takes for ``--packages-up-to``; the order is that of ``packages``.
+    colcon selects the same for ``--packages-up-to``. The order is that of ``packages``.
     """
     by_name = {package.name: package for package in packages}
     wanted = [name for name in names if name in by_name] or list(by_name)
@@ -118,10 +122,10 @@ def packages_up_to(packages: Sequence[Package], names: Iterable[str]) -> list[Pa
 
 
 def refuse_cycles(packages: Sequence[Package], workspace: Path) -> None:
-    """See that the packages can be ordered.
+    """Check that the packages can be ordered.
 
     Raises:
-        WorkspaceError: some need one another, with their names in a circle.
+        WorkspaceError: some need one another; with their names in a circle.
     """
     cycle = find_cycle({package.name: package.needs for package in packages})
     if cycle:
@@ -129,7 +133,7 @@ def refuse_cycles(packages: Sequence[Package], workspace: Path) -> None:
 
 
 def find_cycle(needs: Mapping[str, Sequence[str]]) -> list[str]:
-    """Names that need one another in a circle, the first one again at the end; none: empty.
+    """Names that need one another in a circle, the first one again at the end; empty if none do.
 
     Args:
         needs: for each name the names that it needs; those without a row of their own need none.
@@ -159,20 +163,30 @@ def read_cmakelists(package: Package) -> bytes | None:
         InputError: CMake cannot parse the file, with the line; or it cannot be read.
     """
     path = package.cmakelists
-    try:
-        data = path.read_bytes()
-    except FileNotFoundError:
-        if path.is_symlink():
-            raise InputError("a symbolic link that leads nowhere", path) from None
-        return None
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror}", path) from error
-    check_syntax(data, path)
+    data = read_list_file(path)
+    if data is not None:
+        check_syntax(data, path)
+    elif path.is_symlink():
+        raise InputError("a symbolic link that leads nowhere", path)
     return data
 
 
+def read_list_file(path: Path) -> bytes | None:
+    """The bytes of a CMakeLists.txt, unchecked; None if it does not exist.
+
+    Raises:
+        InputError: it cannot be read.
+    """
+    try:
+        return path.read_bytes()
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror}", path) from error
+
+
 def check_syntax(data: bytes, path: Path) -> None:
-    """See that CMake can parse the bytes of a list file.
+    """Check that CMake can parse the bytes of a list file.
 
     Raises:
         InputError: it cannot, with the line in ``path``.
@@ -183,7 +197,7 @@ def check_syntax(data: bytes, path: Path) -> None:
 
 
 def package_folders(workspace: Path) -> Iterator[Path]:
-    """The folders with a package.xml, sorted; which are skipped ``find_packages`` says."""
+    """The folders with a package.xml, sorted; ``find_packages`` says which are skipped."""
     seen: set[str] = set()
     for folder, below, files in os.walk(workspace, followlinks=True):
         real = os.path.realpath(folder)
@@ -205,11 +219,6 @@ def _is_searched(folder: Path) -> bool:
     return folder.name not in PRODUCTS or (folder / MANIFEST).is_file()
 
 
-def _read_package(folder: Path) -> Package:
-    manifest = read_manifest(folder)
-    return Package(manifest.name, folder, manifest.build_type, manifest.needs)
-
-
 def read_manifest(folder: Path) -> Manifest:
     """The package.xml of a folder.
 
@@ -224,14 +233,12 @@ def read_manifest(folder: Path) -> Manifest:
             "catkin_pkg is not installed; run: apt-get install python3-catkin-pkg"
         ) from error
     path = folder / MANIFEST
+    raw = read_bytes(path)
     try:
-        raw = path.read_bytes()
         expat.ParserCreate().Parse(raw, True)
         manifest = parse_package_string(raw, filename=str(path), warnings=[])
         manifest.evaluate_conditions({"ROS_VERSION": "1", **os.environ})
         build_type = manifest.get_build_type()
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror}", path) from error
     except expat.ExpatError as error:
         what = expat.ErrorString(error.code)
         raise InputError(
@@ -255,7 +262,7 @@ def read_manifest(folder: Path) -> Manifest:
 
 
 def _names(*lists: Iterable[Any]) -> tuple[str, ...]:
-    """Of catkin_pkg's dependencies those whose condition holds, each once."""
+    """The dependencies of catkin_pkg whose condition holds, each once."""
     return tuple(
         dict.fromkeys(one.name for each in lists for one in each if one.evaluated_condition)
     )

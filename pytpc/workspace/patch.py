@@ -1,34 +1,30 @@
 """Patching a workspace: TPC's block into every package's CMakeLists.txt, and out again.
 
 All files are read, checked and written beside the old ones before the first is replaced, so that a
-workspace is never half patched. What a file needs to be is worked out in
-``pytpc.workspace.cmake_block``.
+workspace is never half patched. ``pytpc.workspace.cmake_block`` edits the bytes of a file.
 
 A run that was killed between two files leaves the first ones patched; the next run does the others
 and removes what the killed one had written beside them.
 
-Commands: ``python -m pytpc.workspace.patch``, ``pytpc patch`` and ``modify_cmakelists.py``.
+``pytpc patch`` and ``modify_cmakelists.py`` call ``run``.
 """
 
 from __future__ import annotations
 
-import argparse
 import contextlib
-import difflib
 import fcntl
 import os
-import re
-import stat
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from pytpc.base.atomic import leftovers, stage_beside
-from pytpc.base.errors import InputError, TpcError, WorkspaceError
+from pytpc.base.atomic import leftovers, stage_like
+from pytpc.base.diff import unified_diff
+from pytpc.base.errors import InputError, WorkspaceError
 from pytpc.base.paths import cmake_file
 from pytpc.workspace.cmake_block import MARKER, patch_text, restore_text
-from pytpc.workspace.cmake_syntax import command_names
+from pytpc.workspace.cmake_syntax import commands
 from pytpc.workspace.packages import (
     IGNORE_MARKERS,
     MANIFEST,
@@ -36,30 +32,16 @@ from pytpc.workspace.packages import (
     check_syntax,
     find_packages,
     read_cmakelists,
+    read_list_file,
     select_packages,
 )
 
-__all__ = [
-    "Change",
-    "apply_changes",
-    "calls_project",
-    "diff",
-    "main",
-    "patch_text",
-    "plan",
-    "plan_tree",
-    "restore_text",
-    "run",
-]
-
-
 _LIST_FILE = "CMakeLists.txt"
-_WHOSE = {False: "package's CMakeLists.txt,", True: "CMakeLists.txt that calls project(),"}
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
-    """What a patch does to one file.
+class ListFileChange:
+    """The change of one CMakeLists.txt.
 
     ``path`` is the place within the workspace, ``real`` the file behind its symbolic links.
     """
@@ -72,7 +54,7 @@ class Change:
 
 def plan(
     workspace: Path, *, restore: bool = False, packages: Iterable[str] = ()
-) -> tuple[list[Change], int]:
+) -> tuple[list[ListFileChange], int]:
     """Work out what a patch, or its reverse, has to change; nothing is written.
 
     A file that several packages share through symbolic links is changed once.
@@ -95,13 +77,16 @@ def plan(
     files = [
         (package.cmakelists, before)
         for package in chosen
-        if (before := _read_as_is(package.cmakelists) if restore else read_cmakelists(package))
+        # A file that was broken after it was patched can still be restored.
+        if (before := read_list_file(package.cmakelists) if restore else read_cmakelists(package))
         is not None
     ]
     return _plan_files(files, restore=restore)
 
 
-def plan_tree(folder: Path, *, restore: bool = False) -> tuple[list[Change], int, list[Path]]:
+def plan_tree(
+    folder: Path, *, restore: bool = False
+) -> tuple[list[ListFileChange], int, list[Path]]:
     """The same for any folder: each CMakeLists.txt below it that calls project().
 
     Hidden folders, build folders and folders with ``COLCON_IGNORE`` or its like are skipped.
@@ -124,7 +109,7 @@ def plan_tree(folder: Path, *, restore: bool = False) -> tuple[list[Change], int
         if path.is_symlink() and not path.resolve().is_relative_to(top):
             foreign.append(path)
             continue
-        before = _read_as_is(path)
+        before = read_list_file(path)
         is_package = (path.parent / MANIFEST).is_file()
         if before is not None and (is_package or calls_project(before) or MARKER.search(before)):
             if not restore:
@@ -137,10 +122,10 @@ def plan_tree(folder: Path, *, restore: bool = False) -> tuple[list[Change], int
 
 def calls_project(data: bytes) -> bool:
     """Whether a list file calls project() itself; CMake wants that of a top-level one."""
-    return any(name == "project" for name, _ in command_names(data))
+    return any(command.name == "project" for command in commands(data))
 
 
-def apply_changes(changes: Sequence[Change]) -> None:
+def apply_changes(changes: Sequence[ListFileChange]) -> None:
     """Write the changes: all or none.
 
     Mode and, where permitted, owner of each file stay, and so do symbolic links to it.
@@ -150,10 +135,10 @@ def apply_changes(changes: Sequence[Change]) -> None:
             file is as it was, or the message says which is not.
     """
     staged: list[Path] = []
-    replaced: list[Change] = []
+    replaced: list[ListFileChange] = []
     try:
         for change in changes:
-            staged.append(_stage(change, change.after))
+            staged.append(stage_like(change.real, change.after))
         for change, new in zip(changes, staged, strict=True):
             replaced.append(change)
             if change.real.read_bytes() != change.before:
@@ -174,35 +159,23 @@ def apply_changes(changes: Sequence[Change]) -> None:
         raise
 
 
-def _put_back(change: Change) -> bool:
+def _put_back(change: ListFileChange) -> bool:
     """Whether the file has its old content again, or still."""
     try:
         if change.real.read_bytes() != change.before:
-            _stage(change, change.before).replace(change.real)
+            stage_like(change.real, change.before).replace(change.real)
     except OSError:
         return False
     return True
 
 
-def diff(change: Change, workspace: Path) -> bytes:
+def diff(change: ListFileChange, workspace: Path) -> bytes:
     """The change as a unified diff that ``patch -p1`` takes in the workspace."""
     try:
         shown = change.path.relative_to(workspace)
     except ValueError:
         shown = change.path
-    name = os.fsencode(shown)
-    lines = difflib.diff_bytes(
-        difflib.unified_diff,
-        _lines(change.before),
-        _lines(change.after),
-        b"a/" + name,
-        b"b/" + name,
-    )
-    ended = (
-        line if line.endswith(b"\n") else line + b"\n\\ No newline at end of file\n"
-        for line in lines
-    )
-    return b"".join(ended)
+    return unified_diff(os.fsencode(shown), change.before, change.after)
 
 
 def run(
@@ -261,55 +234,11 @@ def _alone(folder: Path) -> Iterator[None]:
         yield
 
 
-def main(
-    arguments: Sequence[str] | None = None,
-    program: str = "python -m pytpc.workspace.patch",
-    *,
-    any_tree: bool = False,
-) -> int:
-    """The command line; it needs no package from outside Debian, unlike ``pytpc``.
-
-    Args:
-        arguments: without the program's name; those of the process where None.
-        program: how it is called in its help.
-        any_tree: take any folder with CMake projects, packages or not.
-
-    Returns:
-        The exit status: 0, 1 after an error that was shown as one line, 130 when interrupted.
-    """
-    parser = argparse.ArgumentParser(
-        prog=program,
-        description=f"Put TPC's three lines at the top of each {_WHOSE[any_tree]}"
-        " or take them out again.",
-    )
-    help_text = "any folder" if any_tree else "folder with ROS packages"
-    parser.add_argument("workspace", type=Path, metavar="folder", help=help_text)
-    parser.add_argument("--restore", action="store_true", help="take the lines out again")
-    parser.add_argument("--dry-run", action="store_true", help="Show the difference only.")
-    if not any_tree:
-        parser.add_argument(
-            "--package", action="append", metavar="NAME", help="only this one (repeatable)"
-        )
-    chosen = parser.parse_args(arguments)
-    try:
-        run(
-            chosen.workspace,
-            restore=chosen.restore,
-            dry_run=chosen.dry_run,
-            packages=() if any_tree else chosen.package or (),
-            any_tree=any_tree,
-        )
-    except TpcError as error:
-        print(f"pytpc: error: {error}", file=sys.stderr)
-        return 1
-    except KeyboardInterrupt:
-        return 130
-    return 0
-
-
-def _plan_files(files: Iterable[tuple[Path, bytes]], *, restore: bool) -> tuple[list[Change], int]:
+def _plan_files(
+    files: Iterable[tuple[Path, bytes]], *, restore: bool
+) -> tuple[list[ListFileChange], int]:
     included = "" if restore else str(cmake_file())
-    changes: dict[Path, Change] = {}
+    changes: dict[Path, ListFileChange] = {}
     as_they_should_be: set[Path] = set()
     for path, before in files:
         if not restore and not calls_project(before):
@@ -326,7 +255,7 @@ def _plan_files(files: Iterable[tuple[Path, bytes]], *, restore: bool) -> tuple[
         if before == after:
             as_they_should_be.add(real)
         else:
-            changes.setdefault(real, Change(path, real, before, after))
+            changes.setdefault(real, ListFileChange(path, real, before, after))
     return list(changes.values()), len(as_they_should_be)
 
 
@@ -339,36 +268,3 @@ def _list_files(folder: Path) -> Iterator[Path]:
         below[:] = sorted(name for name in below if not name.startswith("."))
         if _LIST_FILE in files:
             yield Path(here, _LIST_FILE)
-
-
-def _read_as_is(path: Path) -> bytes | None:
-    """Unchecked: a file that was broken after it was patched can still be restored."""
-    try:
-        return path.read_bytes()
-    except FileNotFoundError:
-        return None
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror}", path) from error
-
-
-def _stage(change: Change, data: bytes) -> Path:
-    status = change.real.stat()
-    staged = stage_beside(change.real, data)
-    try:
-        if (status.st_uid, status.st_gid) != (os.geteuid(), os.getegid()):
-            with contextlib.suppress(PermissionError):
-                os.chown(staged, status.st_uid, status.st_gid)
-        staged.chmod(stat.S_IMODE(status.st_mode))
-    except BaseException:
-        staged.unlink()
-        raise
-    return staged
-
-
-def _lines(data: bytes) -> list[bytes]:
-    """Lines as diff and patch count them: a carriage return alone ends none."""
-    return re.findall(rb"[^\n]*\n|[^\n]+", data)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,7 +1,7 @@
-"""What a person types to build with TPC by the tool that is already in use.
+"""The commands that build with TPC by the tool that a user already has.
 
-Nothing is run here: ``steps`` says the commands, ``shown`` writes them for a shell. All builds get
-folders of their own, because a build folder keeps the compiler that it was made with.
+Nothing is run here: ``steps`` has the commands, ``shown`` writes them for a shell. Each build gets
+its own folder, because a build folder keeps the compiler that it was made with.
 """
 
 from __future__ import annotations
@@ -34,14 +34,14 @@ HEADINGS = {
 
 @dataclass(frozen=True, slots=True)
 class Choices:
-    """What the user chose of TPC: own rules, a profile, comparisons with constants."""
+    """The user's settings of TPC: own rules, a profile, comparisons with constants."""
 
     rules: Path | None = None
     profile: str | None = None
     constants: bool = False
 
     def variables(self) -> dict[str, str]:
-        """As tpc.cmake and the compiler wrappers call them; only those that were chosen."""
+        """The variables of tpc.cmake and the compiler wrappers; only those that were chosen."""
         chosen = {
             "TPC_RULES": None if self.rules is None else str(self.rules.absolute()),
             "TPC_PROFILE": self.profile,
@@ -163,7 +163,7 @@ def _compilers(prefix: Path, choices: Choices) -> list[Step]:
             Step(("export", f"{name}={value}"), "compilers and archiver")
             for name, value in variables.items()
         ),
-        # What calls a linker by itself has to have one that knows bitcode.
+        # A build that calls the linker itself needs one that knows bitcode.
         Step(("export", "LD=ld.lld-19"), "compilers and archiver"),
         *(
             Step(("export", f"{name}={value}"), "what to analyse")

@@ -125,12 +125,12 @@ def test_symbolic_links_and_permissions_stay(apply, params: Path, tmp_path: Path
 @pytest.mark.parametrize(
     ("text", "words", "said"),
     [
-        (MISSION_PARAMS, ("gone", "1"), "params.yaml: gone does not stand in it"),
+        (MISSION_PARAMS, ("gone", "1"), "params.yaml: gone is not in the file"),
         ("a: {x: 1}\nb: {x: 2}\n", ("x", "3"), "several values end with x: a/x, b/x"),
         (MISSION_PARAMS, ("other", "3.5"), "params.yaml: the parameter is a whole number"),
         ("a: [\n", ("a", "1"), "not YAML"),
         ("a: caf\xe9\n", ("a", "1"), "params.yaml:1: not UTF-8"),
-        ("", ("a", "1"), "a does not stand in it"),
+        ("", ("a", "1"), "a is not in the file"),
     ],
 )
 def test_one_line_and_nothing_written(
@@ -220,7 +220,7 @@ def test_what_is_refused_by_origin(apply, tmp_path: Path) -> None:
         "main.launch:29: /leg/step stands in the args of the node: _step:=0.5"
         in apply(launch, "/leg/step", "2", status=1).output
     )
-    assert "roslaunch works its value out" in apply(launch, "/computed", "2", status=1).output
+    assert "roslaunch computes its value" in apply(launch, "/computed", "2", status=1).output
     assert "the output of a command" in apply(launch, "/text", "2", status=1).output
     merged = apply(launch, "/other/mass", "5", status=1).output
     assert "config/params.yaml:6: it is the value of arm/mass, too" in merged

@@ -11,11 +11,11 @@ from pathlib import Path
 import pytest
 from launch_samples import MANIFEST, MISSION_PARAMS, needs_roslaunch
 
+from pytpc.base.atomic import replace_file
 from pytpc.base.errors import RunError, TpcError
-from pytpc.ros.live_change import set_live
-from pytpc.ros.ros1.live_values import LiveChange, Robot
+from pytpc.ros.ros1.live_values import LiveChange, Robot, set_live
 from pytpc.values import apply
-from pytpc.values.apply import FileChange, apply_change, replace_file
+from pytpc.values.apply import FileChange, apply_change
 from pytpc.values.installed import is_installed, of_the_system, source_of
 from pytpc.values.journal import Journal, folder_of
 
@@ -107,7 +107,7 @@ def test_a_note(apply, params: Path, tmp_path: Path) -> None:
     # What stood in the file may be nobody else's business.
     assert note.stat().st_mode & 0o777 == 0o600
     note.write_text('{"schema": 9}')
-    assert f"{note}: not a change that was noted" in apply("--list").output
+    assert f"{note}: not a recorded change" in apply("--list").output
 
 
 def test_where_the_notes_are(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -177,8 +177,8 @@ def test_a_note_that_is_broken_keeps_no_other_from_being_taken_back(
     apply(params, "mission/limit", "0.035")
     broken = tmp_path / "state/tpc/applied/000009.json"
     broken.write_text("{")
-    assert "000009.json: not a change that was noted" in apply("--list").output
-    assert "000009.json: not a change that was noted" in apply("--undo").output
+    assert "000009.json: not a recorded change" in apply("--list").output
+    assert "000009.json: not a recorded change" in apply("--undo").output
     assert params.read_bytes() == before
     assert broken.read_text() == "{"
 
@@ -186,7 +186,7 @@ def test_a_note_that_is_broken_keeps_no_other_from_being_taken_back(
 @pytest.mark.parametrize(("now", "kept"), [(0.5, 0), (0.7, 1)])
 def test_the_robot_took_it_and_its_answer_was_lost(tmp_path: Path, now: float, kept: int) -> None:
     class Lost(Robot):
-        def put(self, change: LiveChange) -> tuple[object, bool]:
+        def put(self, name: str, value: object, service: str) -> tuple[object, bool]:
             raise RunError("no answer")
 
         def value(self, name: str) -> object:

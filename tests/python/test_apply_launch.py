@@ -5,9 +5,8 @@ from __future__ import annotations
 import pytest
 
 from pytpc.values.launch_edit import NewText, add_param, edit_argument, edit_inline, edit_param
-from pytpc.values.launch_value import launch_value
-from pytpc.values.launch_xml import meaning, read_tags
-from pytpc.values.new_value import Refused
+from pytpc.values.launch_xml import read_tags
+from pytpc.values.new_value import Refused, launch_value
 
 
 def param(attributes: str) -> str:
@@ -46,7 +45,7 @@ def test_a_param(before: str, given: str, after: str) -> None:
         ('name="x" value="7"', "7.5", "a whole number"),
         ('name="x" value="0.5"', "inf", "give the tag a type"),
         ('name="x" value="map"', "5", "give the tag a type"),
-        ('name="x" value="$(eval 1+2)"', "5", "roslaunch works its value out"),
+        ('name="x" value="$(eval 1+2)"', "5", "roslaunch computes its value"),
         ('name="x" command="date"', "5", "the output of a command"),
         ('name="x" value="{a: 1}" type="yaml"', "5", 'type="yaml"'),
         ('name="y" value="7"', "8", "the <param> for /n/x is gone"),
@@ -259,4 +258,5 @@ def test_the_places_of_tags() -> None:
 
 
 def test_white_space_in_attributes() -> None:
-    assert meaning("a\r\nb\tc") == "a b c"
+    (tag,) = read_tags(b"<param value='a\r\nb\tc &lt;&#65;&#x42;&quot;'/>")
+    assert tag.attributes["value"].value == 'a b c <AB"'

@@ -13,10 +13,11 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pytpc.values.apply import FileChange, apply_change, replace_file, undo_change
+from pytpc.base.atomic import replace_file
+from pytpc.values.apply import FileChange, apply_change, undo_change
 from pytpc.values.journal import Journal
 from pytpc.values.launch_edit import edit_param
-from pytpc.values.launch_value import launch_value
+from pytpc.values.new_value import launch_value
 from pytpc.values.yaml_edit import edit_yaml
 
 NAMES = st.sampled_from(["a", "b", "limit", "rate_2", "größe", "x-y", "Null_", "on_off"])
@@ -137,13 +138,14 @@ def test_any_yaml(document: Written, number: float, word: str, flag: bool) -> No
     elif isinstance(old, float):
         new, given_text = number, repr(number)
     edit = edit_yaml(document.text, document.keys, given_text)
+    after = edit.data.decode()
     # All but the scalar's own characters are as they were...
     tail = document.text[document.end :]
-    assert edit.text.startswith(document.text[: document.start])
-    assert edit.text.endswith(tail)
-    assert len(edit.text) >= document.start + len(tail)
+    assert after.startswith(document.text[: document.start])
+    assert after.endswith(tail)
+    assert len(after) >= document.start + len(tail)
     # ... and PyYAML, which rosparam uses, reads the new value and no other that differs.
-    assert repr(yaml.safe_load(edit.text)) == repr(changed(before, document.keys, new))
+    assert repr(yaml.safe_load(after)) == repr(changed(before, document.keys, new))
 
 
 @st.composite

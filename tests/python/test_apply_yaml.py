@@ -69,7 +69,7 @@ def keys_of(text: str, name: str) -> tuple[str, ...]:
 
 @pytest.mark.parametrize(("before", "name", "given", "after"), CHANGES)
 def test_changed(before: str, name: str, given: str, after: str) -> None:
-    assert edit_yaml(before, keys_of(before, name), given).text == after
+    assert edit_yaml(before, keys_of(before, name), given).data.decode() == after
 
 
 def test_what_is_said_of_a_change() -> None:
@@ -85,15 +85,15 @@ def test_what_is_said_of_a_change() -> None:
 def test_an_angle_that_no_degrees_give() -> None:
     odd = next(x for x in (0.1 + n / 1000 for n in range(1000)) if degrees_text(x) is None)
     edit = edit_yaml("a: deg(90)\n", ("a",), repr(odd))
-    assert edit.text == f"a: {odd!r}\n"
+    assert edit.data.decode() == f"a: {odd!r}\n"
     assert edit.notes == ("no number of degrees is this angle; it is in rad now",)
     with pytest.raises(Refused, match="no number of degrees is"):
         edit_yaml("a: !degrees 90\n", ("a",), repr(odd))
 
 
 REFUSED = [
-    ("a: 1.5\n", "b", "2", "b stands nowhere in it"),
-    ("a: 1\n---\na: 2\n", "a", "3", "a stands in 2 documents"),
+    ("a: 1.5\n", "b", "2", "b is not in the file"),
+    ("a: 1\n---\na: 2\n", "a", "3", "a is in 2 documents of the file"),
     ("a: 25\n", "a", "2.5", "the parameter is a whole number and '2.5' is not"),
     ("a: 2.5\n", "a", "high", "the parameter is a number and 'high' is not"),
     ("a: true\n", "a", "2", "the parameter is true or false and '2' is not"),
@@ -103,9 +103,10 @@ REFUSED = [
     ("a: &x 1.5\nb: *x\n", "a", "2.5", "it is the value of b, too; --force changes all"),
     ("m: &m {z: 1}\nn: {<<: *m}\n", "n/z", "3", "it is the value of m/z, too"),
     ("m: &m {z: 1}\nn: *m\n", "n/z", "3", "it is the value of m/z, too"),
-    ("a: $(arg x)\n", "a", "2", "roslaunch puts something in here"),
+    ("a: $(arg x)\n", "a", "2", "roslaunch substitutes a part of it"),
     ("a: !!binary aGk=\n", "a", "2", "the tag tag:yaml.org,2002:binary is not supported"),
-    ("a: [1, 2]\n", "a", "[1]", "the list has 2 values, and 1 are given"),
+    ("a: !!bool maybe\n", "a", "true", "'maybe' is no bool"),
+    ("a: [1, 2]\n", "a", "[1]", "the list has 2 values, but 1 were given"),
     ("a: [1, 2]\n", "a", "3", "give all of it"),
     ("a: [1, [2]]\n", "a", "[1, 2]", "lists in lists"),
     ("a: &l [1, 2]\nb: *l\n", "b", "[1, 3]", "it is the value of a, too"),
@@ -141,7 +142,7 @@ FORCED = [
 
 @pytest.mark.parametrize(("before", "name", "given", "after"), FORCED)
 def test_forced(before: str, name: str, given: str, after: str) -> None:
-    assert edit_yaml(before, keys_of(before, name), given, force=True).text == after
+    assert edit_yaml(before, keys_of(before, name), given, force=True).data.decode() == after
 
 
 # --- scalars, as PyYAML reads them (which rosparam uses)

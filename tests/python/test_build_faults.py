@@ -2,7 +2,8 @@
 
 import pytest
 
-from pytpc.build.faults import first_error, missing_names
+from pytpc.build.fallback import first_error
+from pytpc_evaluation.survey.missing_names import missing_names
 
 CMAKE = """-- Found catkin
 -- Could NOT find Doxygen (missing: DOXYGEN_EXECUTABLE)

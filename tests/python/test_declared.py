@@ -13,8 +13,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from pytpc.diagnosis.results.suspects import Evaluation, Suspect
 from pytpc.diagnosis.suggestion.advise import declared_for
 from pytpc.ingest.declared_bag import decode_description
-from pytpc.values.declared_cfg import read_cfg
-from pytpc.values.declared_files import declared_in, read_declared
+from pytpc.values.declared import declared_in, read_cfg, read_declared
 
 EXAMPLES = Path(__file__).parents[2] / "examples" / "threshold_nodes"
 HEAD = """#!/usr/bin/env python

@@ -7,15 +7,17 @@ from pathlib import Path
 import pytest
 
 from pytpc.base.paths import BUILD_TOOLS, ros_places
-from pytpc.workspace.doctor import look
+from pytpc.workspace.doctor import machine as doctor_machine
 from pytpc.workspace.doctor.finding import Finding, Severity, by_severity, error, note, warning
-from pytpc.workspace.doctor.look import ccache_settings, look_at_machine, version_of
 from pytpc.workspace.doctor.machine import (
     COLCON_EXTENSIONS,
     UNSUITED,
     Machine,
     Program,
+    ccache_settings,
     check_machine,
+    look_at_machine,
+    version_of,
 )
 
 MIB = 1024 * 1024
@@ -187,7 +189,7 @@ def test_the_ros_packages_may_have_different_prefixes(tmp_path: Path) -> None:
 
 def prefix_with(folder: Path, compiler: str) -> None:
     """An installed half whose compiler is a script."""
-    for part in look._PARTS:
+    for part in doctor_machine._PARTS:
         (folder / part).parent.mkdir(parents=True, exist_ok=True)
         (folder / part).touch()
     (folder / "bin/tpc-clang++").write_text(f"#!/bin/sh\n{compiler}\n", encoding="utf-8")

@@ -13,9 +13,16 @@ from pytpc.cli import machine_commands
 from pytpc.cli.main import main
 from pytpc.workspace.cmake_block import patch_text
 from pytpc.workspace.doctor.finding import Finding, Severity
-from pytpc.workspace.doctor.look_workspace import look_at_known, look_at_workspace, read_cache
 from pytpc.workspace.doctor.machine import Machine
-from pytpc.workspace.doctor.workspace import Known, check_workspace, debian_names, unsuited_flags
+from pytpc.workspace.doctor.workspace import (
+    Known,
+    check_workspace,
+    debian_names,
+    look_at_known,
+    look_at_workspace,
+    read_cache,
+    unsuited_flags,
+)
 from pytpc.workspace.packages import find_cycle
 
 CMAKE_FILE = "/opt/tpc/share/tpc/cmake/tpc.cmake"

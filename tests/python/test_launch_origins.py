@@ -85,7 +85,7 @@ def test_what_else_is_known(sample):
         f"{folder}/robot/launch/inner.launch:4",
         f"{main_launch}:22",
     )
-    assert "roslaunch works it out" in target.origins["/computed"].note
+    assert "roslaunch computes it" in target.origins["/computed"].note
     # The command of a parameter is not run: `false` would have failed the whole file.
     assert target.origins["/text"].note == "the output of a command: false"
     assert target.origins["/leg/step"].note == "in the args of the node: _step:=0.5"

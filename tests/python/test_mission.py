@@ -41,9 +41,8 @@ from pytpc.ros.mission_run import (
 )
 from pytpc.ros.ros1.bag_file import BagFile
 from pytpc.ros.ros1.graph import GraphProcess, RosGraph
-from pytpc.ros.ros1.launch_mission import launch_command, run_mission
 from pytpc.ros.ros1.master import Master
-from pytpc.ros.ros1.record_graph import record_graph
+from pytpc.ros.ros1.record_mission import launch_command, record_graph, run_mission
 from pytpc.ros.ros1.recorder import Discovery, Recorder
 from pytpc.ros.ros1.relay import Relay
 from pytpc.ros.ros1.subscriber import Source

@@ -13,7 +13,7 @@ from launch_samples import environment, make_package, needs_roslaunch
 from pytpc.base.errors import InputError
 from pytpc.cli.main import main
 from pytpc.ros.mission_run import RecordOptions
-from pytpc.ros.ros1 import record_graph, recorder
+from pytpc.ros.ros1 import record_mission, recorder
 from pytpc.ros.ros1.master import Master
 from pytpc.values import recording
 from pytpc.values.origins import (
@@ -304,11 +304,11 @@ def test_recording_goes_on_while_the_launch_file_is_read(tmp_path, monkeypatch):
     monkeypatch.setattr(recorder, "RawSubscriber", Subscriber)
     monkeypatch.setattr(recorder, "Discovery", Nothing)
     monkeypatch.setattr(Master, "has_sim_time", lambda _: False)
-    monkeypatch.setattr(record_graph, "try_trace", slow)
-    monkeypatch.setattr(record_graph, "dump_params", dump)
+    monkeypatch.setattr(record_mission, "try_trace", slow)
+    monkeypatch.setattr(record_mission, "dump_params", dump)
     env = {"ROS_MASTER_URI": "http://localhost:1"}
     launch = tmp_path / "a.launch"
     options = RecordOptions(tmp_path / "out", launch, timeout_s=8.0)
-    record_graph.record_graph(options, stop=stop, env=env)
+    record_mission.record_graph(options, stop=stop, env=env)
     document = json.loads((tmp_path / "out" / ORIGINS_FILE).read_text())
     assert document["reason"] == "read meanwhile"

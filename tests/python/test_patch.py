@@ -13,9 +13,11 @@ from packages import add_package, contents, install_prefix, make_workspace
 
 from pytpc.base.errors import InputError, MissingToolError, WorkspaceError
 from pytpc.workspace import patch
-from pytpc.workspace.patch import Change, apply_changes, diff, patch_text, plan, restore_text
+from pytpc.workspace.cmake_block import patch_text, restore_text
+from pytpc.workspace.patch import ListFileChange, apply_changes, diff, plan
 
 ROOT = Path(__file__).resolve().parents[2]
+SCRIPT = ROOT / "modify_cmakelists.py"
 BOM = b"\xef\xbb\xbf"
 FILE = "/opt/tpc/share/tpc/cmake/tpc.cmake"
 FIRST = (
@@ -309,7 +311,7 @@ def test_patching_needs_the_installed_file_and_restoring_does_not(
 def test_the_diff_is_one_that_patch_applies(workspace: Path, prefix: Path, text: bytes) -> None:
     path = workspace / "src/arm/CMakeLists.txt"
     path.write_bytes(text)
-    change = Change(path, path, text, patch_text(text, FILE))
+    change = ListFileChange(path, path, text, patch_text(text, FILE))
     shown = diff(change, workspace)
     assert shown.startswith(b"--- a/src/arm/CMakeLists.txt\n+++ b/src/arm/CMakeLists.txt\n@@ ")
     command = ["patch", "--binary", "-p1"]
@@ -321,7 +323,7 @@ def test_a_dry_run_shows_and_writes_nothing(
     workspace: Path, prefix: Path, capfdbinary: pytest.CaptureFixture[bytes]
 ) -> None:
     before = contents(workspace)
-    assert patch.main([str(workspace), "--dry-run"]) == 0
+    patch.run(workspace, dry_run=True)
     shown = capfdbinary.readouterr().out
     assert shown.count(b"\n+# >>> tpc >>>") == 2
     assert b"+# <<< tpc <<<\n project(face)\n\\ No newline at end of file\n" in shown
@@ -332,9 +334,9 @@ def test_a_dry_run_shows_and_writes_nothing(
 def test_the_command_says_what_it_did(
     workspace: Path, prefix: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert patch.main([str(workspace), "--package", "arm"]) == 0
-    assert patch.main([str(workspace)]) == 0
-    assert patch.main([str(workspace), "--restore"]) == 0
+    patch.run(workspace, packages=["arm"])
+    patch.run(workspace)
+    patch.run(workspace, restore=True)
     arm, face = (workspace / "src" / name / "CMakeLists.txt" for name in ("arm", "face"))
     assert capsys.readouterr().out.splitlines() == [
         f"patched {arm}",
@@ -347,42 +349,45 @@ def test_the_command_says_what_it_did(
     ]
 
 
-def test_the_command_ends_with_one_line_and_status_1(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert patch.main([str(tmp_path / "none")]) == 1
-    assert capsys.readouterr().err == f"pytpc: error: {tmp_path}/none: no such folder\n"
+def run_script(
+    *arguments: str | Path, folder: Path, before: str = ""
+) -> subprocess.CompletedProcess[str]:
+    """modify_cmakelists.py with Debian's Python; ``before`` is code that runs first."""
+    code = f"import runpy; {before}; runpy.run_path({str(SCRIPT)!r}, run_name='__main__')"
+    command = ["-c", code] if before else [str(SCRIPT)]
+    return subprocess.run(
+        ["/usr/bin/python3", *command, *arguments],
+        cwd=folder,
+        env={
+            "TPC_PREFIX": str(folder / "prefix"),
+            "PYTHONDONTWRITEBYTECODE": "1",
+            **({"PYTHONPATH": str(ROOT)} if before else {}),
+        },
+        capture_output=True,
+        text=True,
+        check=False,
+    )
 
 
-def test_an_interrupted_command_ends_with_130(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def interrupted(*_: object, **__: object) -> None:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(patch, "run", interrupted)
-    assert patch.main([str(tmp_path)]) == 130
+def test_the_script_ends_with_one_line_and_status_1(tmp_path: Path) -> None:
+    ran = run_script(tmp_path / "none", folder=tmp_path)
+    assert (ran.returncode, ran.stdout) == (1, "")
+    assert ran.stderr == f"pytpc: error: {tmp_path}/none: no such folder\n"
 
 
-@pytest.mark.parametrize(
-    "command",
-    [[str(ROOT / "modify_cmakelists.py")], ["-m", "pytpc.workspace.patch"]],
-)
-def test_the_scripts_run_on_debians_python(
-    workspace: Path, prefix: Path, tmp_path: Path, command: list[str]
-) -> None:
+def test_an_interrupted_script_ends_with_130(tmp_path: Path) -> None:
+    interrupted = (
+        "import pytpc.workspace.patch as patch;"
+        " patch.plan_tree = lambda *_, **__: exec('raise KeyboardInterrupt')"
+    )
+    ran = run_script(tmp_path, folder=tmp_path, before=interrupted)
+    assert (ran.returncode, ran.stdout, ran.stderr) == (130, "", "")
+
+
+def test_the_script_runs_on_debians_python(workspace: Path, prefix: Path, tmp_path: Path) -> None:
     before = contents(workspace)
-    own = command == ["-m", "pytpc.workspace.patch"]
-    environment = {"TPC_PREFIX": str(tmp_path / "prefix"), "PYTHONDONTWRITEBYTECODE": "1"}
     for option, done in ((), "2 patched"), (("--restore",), "2 restored"):
-        ran = subprocess.run(
-            ["/usr/bin/python3", *command, str(workspace), *option],
-            cwd=ROOT if own else tmp_path,
-            env=environment,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
+        ran = run_script(workspace, *option, folder=tmp_path)
         assert (ran.returncode, ran.stderr) == (0, "")
         assert ran.stdout.splitlines()[-1] == done
     assert contents(workspace) == before

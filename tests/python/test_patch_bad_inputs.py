@@ -212,7 +212,7 @@ def slow(self, target):
     time.sleep(60)
     return done
 Path.replace = slow
-patch.main([sys.argv[1]])
+patch.run(Path(sys.argv[1]))
 """
 
 

@@ -16,7 +16,7 @@ from pytpc.base.errors import InputError
 from pytpc.base.shell_words import EnvChange
 from pytpc.build.build import installed
 from pytpc.cli.main import main
-from pytpc.ros.python_env import has_python, mission_env, with_python, without_python
+from pytpc.ros.node_start import has_python, mission_env, with_python, without_python
 
 ON_PATH = f"{Path(pytpc.__file__).parent}/python_runtime/on_path"
 

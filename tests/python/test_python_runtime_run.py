@@ -15,7 +15,7 @@ from click.testing import CliRunner
 from pytpc.cli.main import main
 from pytpc.ingest.reading import read
 from pytpc.python_runtime.listed import names_script, read_table
-from pytpc.ros.node_program import command_of, interpreter_of
+from pytpc.ros.node_start import command_of, interpreter_of
 
 ROOT = Path(__file__).parents[2]
 RUNNER = str(ROOT / "pytpc/python_runtime/run.py")

@@ -11,9 +11,8 @@ from xmlrpc.server import SimpleXMLRPCRequestHandler, SimpleXMLRPCServer
 import pytest
 
 from pytpc.base.errors import RunError
-from pytpc.ros.node_settings import chosen, values_of
 from pytpc.ros.ros1.connection import encode_header
-from pytpc.ros.ros1.instrumented_nodes import InstrumentedNodes
+from pytpc.ros.ros1.instrumented_nodes import InstrumentedNodes, chosen, values_of
 
 HOST = "127.0.0.1"
 

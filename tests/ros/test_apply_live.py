@@ -20,7 +20,7 @@ from pytpc.cli.main import main
 from pytpc.ros.mission_run import RecordOptions
 from pytpc.ros.ros1.graph import RosGraph
 from pytpc.ros.ros1.live_values import Robot
-from pytpc.ros.ros1.record_graph import record_graph
+from pytpc.ros.ros1.record_mission import record_graph
 from pytpc.values.origins import read_origins
 
 # What dynamic_reconfigure's generator makes of four lines gen.add(...).

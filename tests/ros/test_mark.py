@@ -52,7 +52,7 @@ def test_keys_of_two_observers_are_marks_in_the_bag(graph: RosGraph, tmp_path: P
         ana.wait_for("nobody listens; wall time")
         # Nobody listens to this one yet: the recorder gets it when it comes.
         ana.press("1")
-        ana.wait_for("1 message kept for who comes")
+        ana.wait_for("1 message kept for later listeners")
         recorder = record(graph, bag)
         for terminal in (ana, ben):
             terminal.wait_for("1 node listening; wall time")

@@ -14,7 +14,7 @@ import pytest
 from pytpc.base.errors import MissingToolError
 from pytpc.recording.mission import Dropped, load_recording
 from pytpc.ros.mission_run import Progress
-from pytpc.ros.ros1 import launch_mission
+from pytpc.ros.ros1 import record_mission
 from pytpc.ros.ros1.graph import RosGraph
 from pytpc.values.trace import Trace
 
@@ -68,7 +68,7 @@ def test_parameters_are_awaited_though_the_master_hangs(tmp_path: Path) -> None:
                 os.kill(master, signal.SIGCONT)
 
         launched = graph.start("launch", ["sleep", "600"])
-        watch = launch_mission._Watch(graph, launched, tmp_path, time.monotonic(), look)
+        watch = record_mission._Watch(graph, launched, tmp_path, time.monotonic(), look)
         watch.wait_for_parameters(begun)
         assert len(looks) >= 2
         assert graph.call("getParamNames") == ["/set"]

@@ -520,7 +520,7 @@ def test_relay_passes_on_and_a_bag_of_both_topics_has_each_report_once(graph, no
 def test_relay_registers_again_with_a_master_that_was_started_again(graph, nodes):
     passer = relay(graph)
     os.kill(master_of(graph), signal.SIGKILL)
-    until(lambda: "what is connected goes on" in passer.log.read_text())
+    until(lambda: "waiting for the master" in passer.log.read_text())
     graph.start("master2", ["rosmaster", "--core", "-p", graph.uri.rsplit(":", 1)[1]])
     until(lambda: "registered with it" in passer.log.read_text())
     lines: list[str] = []

@@ -23,7 +23,7 @@ from pytpc.ingest.reading import read
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import EVENTS_FILE, MARKS_FILE, Recording, save_recording
 from pytpc.ros.mission_run import MISSION_DONE, MissionRun, Progress, RecordOptions
-from pytpc.ros.ros1.launch_mission import run_mission
+from pytpc.ros.ros1.record_mission import run_mission
 from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.demo.demo_examples import Example
 from pytpc_evaluation.treatment import Treatment, save_treatment

@@ -21,7 +21,7 @@ from pytpc.base.wording import many
 from pytpc.build.build import build_workspace, workspace_env
 from pytpc.cli.console import progress
 from pytpc.cli.mission_commands import mission_progress
-from pytpc.ros.python_env import mission_env
+from pytpc.ros.node_start import mission_env
 from pytpc.static.static_info import StaticInfo
 from pytpc.workspace.colcon import BuildError
 from pytpc_evaluation.demo.demo import TreatedMission, failures, result_table, run_treatment

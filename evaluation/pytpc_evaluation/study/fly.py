@@ -22,7 +22,7 @@ from pytpc.recording.mission import (
     write_marks_json,
 )
 from pytpc.ros.mission_run import MISSION_DONE, Progress, RecordOptions
-from pytpc.ros.ros1.launch_mission import run_mission
+from pytpc.ros.ros1.record_mission import run_mission
 from pytpc_evaluation.study.changes import CHANGES_FILE, save_changes
 from pytpc_evaluation.study.dataset import (
     CAUSES_FILE,

@@ -13,7 +13,7 @@ from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError
 from pytpc.base.paths import MERGED_FILE
 from pytpc.build.build import build_workspace, workspace_env
-from pytpc.ros.python_env import mission_env
+from pytpc.ros.node_start import mission_env
 from pytpc.static.static_info import StaticInfo
 from pytpc.workspace.colcon import Bases
 from pytpc_evaluation.demo.demo_examples import Example, link_package

@@ -21,7 +21,7 @@ from pathlib import Path
 from pytpc.base.errors import InputError, RunError, TpcError, WorkspaceError
 from pytpc.base.paths import BUILD_TOOLS, cmake_file, installed, require_tools
 from pytpc.base.wording import plain
-from pytpc.build.faults import first_error, missing_names
+from pytpc.build.fallback import first_error
 from pytpc.static.link_unit import LinkUnit
 from pytpc.static.static_info import load_link_unit, unit_files
 from pytpc.workspace.cmake_syntax import find_fault
@@ -35,6 +35,7 @@ from pytpc.workspace.colcon import (
     run_lines,
 )
 from pytpc.workspace.packages import MANIFEST, Package, package_folders, read_manifest
+from pytpc_evaluation.survey.missing_names import missing_names
 from pytpc_evaluation.survey.trees import Build, NotBuilt, Tree, TreePackage
 
 BUILD_TYPE = "RelWithDebInfo"

@@ -16,7 +16,7 @@ from pytpc.recording.marks import MarkMessages
 from pytpc.ros.ros1.subscriber import Source
 
 KEEP_S = 1.0
-"""At most so much of a mission is lost when the recorder is killed."""
+"""The seconds of a mission that are lost at most when the recorder is killed."""
 # rosbag pads the first record's parts to 4096 bytes, rosbags both with their two lengths.
 _FIRST_PADDING = 4096 - 69
 _FIRST_PADDING_AT = 13 + 4 + 69

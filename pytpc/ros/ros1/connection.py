@@ -1,4 +1,4 @@
-"""The bytes of a TCPROS connection: its header, and messages that stand after their length.
+"""TCPROS: the header of a connection, messages that stand after their length, and service calls.
 
 Protocol: http://wiki.ros.org/ROS/TCPROS.
 """
@@ -8,9 +8,13 @@ from __future__ import annotations
 import socket
 import struct
 from collections.abc import Mapping
+from typing import NamedTuple
+from urllib.parse import urlsplit
 
 LENGTH = struct.Struct("<I")
 _LARGEST_HEADER = 1 << 28
+_LARGEST_ANSWER = 1 << 22
+_PATIENCE_S = 5.0
 
 
 def encode_header(fields: Mapping[str, str]) -> bytes:
@@ -47,7 +51,7 @@ def sized(data: bytes) -> bytes:
 
 
 def receive(connection: socket.socket, count: int) -> bytes:
-    """Exactly so many bytes.
+    """Receive exactly ``count`` bytes.
 
     Raises:
         OSError: the other side closes the connection before, or is too slow.
@@ -62,7 +66,7 @@ def receive(connection: socket.socket, count: int) -> bytes:
 
 
 def receive_sized(connection: socket.socket, largest: int) -> bytes:
-    """The bytes behind their length.
+    """Receive a length, and as many bytes.
 
     Raises:
         OSError: as ``receive``.
@@ -85,3 +89,34 @@ def receive_header(connection: socket.socket, largest: int = _LARGEST_HEADER) ->
     if "error" in fields:
         raise ValueError(fields["error"])
     return fields
+
+
+class ServiceType(NamedTuple):
+    """The name and checksum that a server compares before it takes a request."""
+
+    name: str
+    md5sum: str
+
+
+def call_service(uri: str, service: str, kind: ServiceType, request: bytes, caller: str) -> bytes:
+    """Call a service at ``rosrpc://HOST:PORT`` with bytes; the answer as bytes.
+
+    Neither rospy nor the service's package is needed.
+
+    Raises:
+        OSError: nobody is there, or does not answer in time.
+        ValueError: the server does not speak the protocol, or refuses.
+    """
+    place = urlsplit(uri)
+    if place.hostname is None or place.port is None:
+        raise ValueError(f"{uri} is no address of a service")
+    header = {"callerid": caller, "service": service, "md5sum": kind.md5sum, "type": kind.name}
+    with socket.create_connection((place.hostname, place.port), _PATIENCE_S) as connection:
+        connection.sendall(encode_header(header))
+        receive_header(connection, _LARGEST_ANSWER)
+        connection.sendall(sized(request))
+        worked = receive(connection, 1) != b"\0"
+        answer = receive_sized(connection, _LARGEST_ANSWER)
+    if not worked:
+        raise ValueError(answer.decode("utf-8", "replace"))
+    return answer

@@ -1,4 +1,4 @@
-"""A real ROS 1 graph of its own: a master on a free port, rosout, and what is started in it.
+"""A real ROS 1 graph: a master on a free port, rosout, and the processes that are started in it.
 
 Everything that a graph starts is ended with it, the children of its children too: roslaunch puts
 each node into a session of its own, so a graph knows its processes by a word in their environment.
@@ -17,11 +17,10 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 from typing import Self
 
 from pytpc.base.errors import MissingToolError, RunError
-from pytpc.base.signals import signals_end
+from pytpc.base.signals import end_group, signals_end
 from pytpc.ros.ros1.master import Master
 
 GRAPH_WORD = "TPC_GRAPH"
@@ -56,7 +55,7 @@ class GraphProcess:
         return is_over and _REQUIRED_DIED.search(self._end_of_log()) is None
 
     def tail(self, lines: int = 3) -> list[str]:
-        """The last lines of its output, without colours; those that tell of an error first."""
+        """The last lines of its output, without colours; lines about errors if there are any."""
         # roslaunch underlines with equals signs, some of them on the line itself.
         said = [line.strip("= \t") for line in self._end_of_log().splitlines()]
         said = [line for line in said if line]
@@ -88,7 +87,6 @@ class RosGraph:
     """
 
     def __init__(self, env: Mapping[str, str], folder: Path, *, use_sim_time: bool = False) -> None:
-        """See the class; nothing runs yet."""
         self.folder = folder.absolute()
         self.uri = ""
         self._word = secrets.token_hex(8)
@@ -124,12 +122,7 @@ class RosGraph:
             self._exits = exits.pop_all()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """End all that was started."""
         self._exits.close()
 
@@ -176,7 +169,7 @@ class RosGraph:
         return process
 
     def check(self) -> None:
-        """See that all processes still run, but those that may end.
+        """Check that all processes still run, except those that may end.
 
         Raises:
             RunError: one has ended; the message has its status and what it said last.
@@ -195,16 +188,7 @@ class RosGraph:
         """
         if process in self._processes:
             self._processes.remove(process)
-        for number, patience in (
-            (signal.SIGINT, process.patience_s),
-            (signal.SIGTERM, 3.0),
-            (signal.SIGKILL, None),
-        ):
-            with contextlib.suppress(ProcessLookupError):
-                os.killpg(process.popen.pid, number)
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                return process.popen.wait(patience)
-        return process.popen.wait()
+        return end_group(process.popen, process.patience_s, 3.0)
 
     def call(self, method: str, *arguments: object) -> object:
         """Call a method of ROS's master API, which gives code, message and value.

@@ -10,22 +10,33 @@ Protocol: http://wiki.ros.org/ROS/Parameter%20Server%20API.
 
 from __future__ import annotations
 
+import contextlib
+import struct
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
-from pytpc.base.errors import InputError, RunError
-from pytpc.ros.ros1.dynamic_reconfigure import SERVICE, reconfigure
+from pytpc.base.errors import InputError, RunError, TpcError
+from pytpc.ros.ros1.connection import LENGTH, ServiceType, call_service, sized
 from pytpc.ros.ros1.master import Master
+from pytpc.values.apply import shown
+from pytpc.values.journal import Journal, JournalEntry
 from pytpc.values.new_value import Refused, guessed, read_value
+from pytpc.values.origins import from_json, to_json
 from pytpc.values.scalars import type_of
 
 _CALLER = "/tpc_apply"
+_SERVICE = "set_parameters"
+_RECONFIGURE = ServiceType("dynamic_reconfigure/Reconfigure", "bb125d226a21982a4a98760418dc2672")
+# The parts of the message in their order, with the form of a value; texts have none.
+_PARTS: Mapping[str, str] = {"bool": "<?", "int": "<i", "string": "", "double": "<d"}
 
 
 @dataclass(frozen=True, slots=True)
 class LiveChange:
     """A value that is set on a running robot.
 
-    ``old`` is None where nothing stood there. ``service`` is that of dynamic_reconfigure, empty
+    ``old`` is None if it was not set. ``service`` is that of dynamic_reconfigure, empty
     where the node has none. ``nodes`` run in whose namespace the name is.
     """
 
@@ -41,7 +52,6 @@ class Robot:
     """The running graph at a master."""
 
     def __init__(self, master: str) -> None:
-        """Nothing is asked yet."""
         self._master = Master(master, _CALLER)
 
     def parameters(self) -> list[str]:
@@ -85,46 +95,162 @@ class Robot:
         if not isinstance(new, bool | int | float | str):
             raise InputError(f"{name} is a {type_of(new)}, which cannot be set on a running robot")
         state = self._master.state()
-        service = f"{name.rpartition('/')[0]}/{SERVICE}"
+        service = f"{name.rpartition('/')[0]}/{_SERVICE}"
         below = tuple(sorted(node for node in state.nodes if name.startswith(f"{node}/")))
         taken_by = service if service in state.services else ""
         return LiveChange(self._master.uri, name, old, new, taken_by, below)
 
-    def put(self, change: LiveChange) -> tuple[object, bool]:
-        """Set the new value.
-
-        A node with dynamic_reconfigure is asked first, for it writes its own values to the server.
-
-        Returns:
-            The value that holds then, and whether the node has taken it over by itself.
-
-        Raises:
-            RunError: the master or the node does not answer, or refuses.
-        """
-        return self._put(change.name, change.new, change.service)
-
     def take_back(self, name: str, old: object, service: str) -> None:
-        """Set what stood there before; where nothing did, the parameter is deleted.
+        """Set the value of before; if there was none, delete the parameter.
 
         Raises:
             RunError: the master or the node does not answer, or refuses.
         """
         if old is not None:
-            self._put(name, old, service)
+            self.put(name, old, service)
         elif self.value(name) is not None:
             self._master.call("deleteParam", name)
 
-    def _put(self, name: str, value: object, service: str) -> tuple[object, bool]:
+    def put(self, name: str, value: object, service: str) -> tuple[object, bool]:
+        """Set a value.
+
+        A node with dynamic_reconfigure is asked first, for it writes its own values to the server.
+
+        Returns:
+            The value that holds then, and whether the node has taken it at once.
+
+        Raises:
+            RunError: the master or the node does not answer, or refuses.
+        """
         # None: the node has ended meanwhile, and the next one reads the server.
         uri = self._master.service_uri(service) if service else None
         if uri is not None:
             try:
-                taken = reconfigure(uri, service, name.rpartition("/")[2], value, _CALLER)
+                taken = _reconfigure(uri, service, name.rpartition("/")[2], value, _CALLER)
             except (OSError, ValueError) as error:
-                raise RunError(f"{service} does not take it: {error}") from error
+                raise RunError(f"{service} refuses the value: {error}") from error
             # A name that is not among what the node sets may be in its answer all the same, but
             # before it answers it has written to the server all that it does set.
             if taken is not None and self.value(name) == taken:
                 return taken, True
         self._master.call("setParam", name, value)
         return self.value(name), False
+
+
+def set_live(
+    robot: Robot, change: LiveChange, journal: Journal
+) -> tuple[JournalEntry, object, bool]:
+    """Set a value on the running robot and record it.
+
+    Returns:
+        The entry of the journal; the value that holds then; whether the node has taken it at once.
+
+    Raises:
+        RunError: the robot refuses it.
+        TpcError: it cannot be recorded; then nothing is set.
+    """
+    live = {
+        "master": change.master,
+        "name": change.name,
+        "service": change.service,
+        "old": to_json(change.old),
+        "new": to_json(change.new),
+    }
+    entry = journal.add_live(change.name, (shown(change.old), shown(change.new)), live)
+    try:
+        holds, taken = robot.put(change.name, change.new, change.service)
+    except BaseException:
+        # The node may have taken it all the same, and only its answer did not come.
+        with contextlib.suppress(TpcError):
+            if repr(robot.value(change.name)) == repr(change.old):
+                journal.remove(entry)
+        raise
+    return entry, holds, taken
+
+
+def take_back_live(
+    entry: JournalEntry, journal: Journal, *, dry_run: bool = False, force: bool = False
+) -> None:
+    """Undo a change of the running robot and forget it.
+
+    Raises:
+        TpcError: the value was changed since, or the robot refuses it.
+    """
+    live = entry.live
+    name, old, new = str(live["name"]), from_json(live["old"]), from_json(live["new"])
+    robot = Robot(str(live["master"]))
+    now = robot.value(name)
+    if not force and repr(now) not in (repr(new), repr(old)):
+        raise RunError(
+            f"{name} is {shown(now)} now: something else has set it; --force sets {entry.old}"
+        )
+    if not dry_run:
+        robot.take_back(name, old, str(live["service"]))
+        journal.remove(entry)
+
+
+def _reconfigure(uri: str, service: str, name: str, value: object, caller: str) -> object:
+    """Call ``set_parameters`` at ``rosrpc://HOST:PORT``; the value that the node then has.
+
+    None where the answer does not have the name.
+
+    Raises:
+        OSError: nobody is there, or does not answer in time.
+        ValueError: the server does not speak the protocol, or refuses.
+    """
+    request = _encode_config(name, value)
+    return _decode_config(call_service(uri, service, _RECONFIGURE, request, caller)).get(name)
+
+
+def _encode_config(name: str, value: object) -> bytes:
+    """A dynamic_reconfigure/Config with one value; its lists stand by type.
+
+    Raises:
+        ValueError: a value that such a message has no list for, or a number that is too large.
+    """
+    kind = type_of(value)
+    if kind not in _PARTS:
+        raise ValueError(f"no {kind} in dynamic_reconfigure")
+    message = b""
+    for part, form in _PARTS.items():
+        message += LENGTH.pack(part == kind)
+        if part == kind:
+            try:
+                data = struct.pack(form, value) if form else sized(str(value).encode())
+            except struct.error as error:
+                raise ValueError(f"{value} does not fit: {error}") from error
+            message += sized(name.encode()) + data
+    return message + LENGTH.pack(0)
+
+
+def _decode_config(data: bytes) -> dict[str, bool | int | float | str]:
+    """The values of a dynamic_reconfigure/Config, without its groups.
+
+    Raises:
+        ValueError: the bytes are no such message.
+    """
+    values: dict[str, Any] = {}
+    at = 0
+
+    def text() -> str:
+        nonlocal at
+        (length,) = LENGTH.unpack_from(data, at)
+        at += LENGTH.size + length
+        if at > len(data):
+            raise ValueError("a text goes past the end")
+        return data[at - length : at].decode("utf-8", "replace")
+
+    try:
+        for form in _PARTS.values():
+            (count,) = LENGTH.unpack_from(data, at)
+            at += LENGTH.size
+            for _ in range(count):
+                name = text()
+                if form:
+                    (values[name],) = struct.unpack_from(form, data, at)
+                    at += struct.calcsize(form)
+                else:
+                    values[name] = text()
+    except struct.error as error:
+        raise ValueError(f"no dynamic_reconfigure/Config: {error}") from error
+    return values

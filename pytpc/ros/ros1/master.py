@@ -5,10 +5,11 @@ Protocols: http://wiki.ros.org/ROS/Master_API, http://wiki.ros.org/ROS/Slave_API
 
 from __future__ import annotations
 
+import os
 import socket
 import threading
 import xmlrpc.client
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from http.client import HTTPException
 from typing import NamedTuple
 from urllib.parse import urlsplit
@@ -68,7 +69,7 @@ def call(uri: str, method: str, *arguments: object) -> object:
 
 
 def reason_of(error: Exception) -> str:
-    """What one of ``CALL_ERRORS`` says, in a few words."""
+    """The message of one of ``CALL_ERRORS``, in a few words."""
     if isinstance(error, xmlrpc.client.Fault):
         return error.faultString
     if isinstance(error, OSError) and error.strerror:
@@ -98,7 +99,6 @@ class Master:
     """
 
     def __init__(self, uri: str, caller: str) -> None:
-        """See the class; nothing is asked yet."""
         self.uri = uri
         self.caller = caller
 
@@ -179,14 +179,16 @@ class SlaveServer:
 
     Args:
         host: the address at which the graph reaches this machine.
-        api: its ``_dispatch(method, arguments)`` answers.
+        answers: for each method that this node has, a function of the caller's name and the
+            other arguments; a ValueError says why it refuses.
         bind: the address to listen at.
     """
 
-    def __init__(self, host: str, api: object, bind: str) -> None:
+    def __init__(self, host: str, answers: Mapping[str, Callable[..., object]], bind: str) -> None:
         """See the class; on return it answers."""
+        self._answers = answers
         self._server = SimpleXMLRPCServer((bind, 0), _Handler, logRequests=False, allow_none=True)
-        self._server.register_instance(api)
+        self._server.register_instance(self)
         self.uri = f"http://{host}:{self._server.server_address[1]}/"
         threading.Thread(target=self._server.serve_forever, args=(0.05,), daemon=True).start()
 
@@ -194,6 +196,21 @@ class SlaveServer:
         """Answer no more calls."""
         self._server.shutdown()
         self._server.server_close()
+
+    def _dispatch(self, method: str, arguments: tuple[object, ...]) -> list[object]:
+        """Code, message and value, as the slave API has them."""
+        try:
+            if method in self._answers:
+                return [1, "", self._answers[method](*arguments)]
+        except (TypeError, ValueError) as error:
+            return [0, str(error), 0]
+        if method == "getPid":
+            return [1, "", os.getpid()]
+        if method in ("getBusStats", "getBusInfo", "getSubscriptions", "getPublications"):
+            return [1, "", []]
+        if method in ("paramUpdate", "publisherUpdate"):
+            return [1, "", 0]
+        return [0, f"{method} is not for this node", 0]
 
 
 class _Handler(SimpleXMLRPCRequestHandler):

@@ -14,7 +14,7 @@ import select
 import socket
 import struct
 import threading
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from pytpc.base.errors import RunError
@@ -27,7 +27,7 @@ _PATIENCE_S = 2.0
 
 @dataclass(frozen=True, slots=True)
 class MessageType:
-    """What a subscriber wants to know of a topic's messages."""
+    """The type of a topic's messages, as a subscriber asks for it."""
 
     name: str
     md5sum: str
@@ -55,9 +55,15 @@ class RawPublisher:
     Args:
         master: the ROS master; its caller is the node that this is.
         topics: with the type of their messages.
+        on_shutdown: called when the master or ``rosnode kill`` ends this node.
     """
 
-    def __init__(self, master: Master, topics: Mapping[str, MessageType]) -> None:
+    def __init__(
+        self,
+        master: Master,
+        topics: Mapping[str, MessageType],
+        on_shutdown: Callable[[], None] = lambda: None,
+    ) -> None:
         """See the class; on return subscribers are served, though none knows of it yet."""
         self._master = master
         self._topics = dict(topics)
@@ -65,7 +71,13 @@ class RawPublisher:
         self._links: dict[str, list[tuple[str, socket.socket]]] = {topic: [] for topic in topics}
         self._host = own_host(os.environ, master.uri)
         self._listener = socket.create_server(("", 0))
-        self._server = SlaveServer(self._host, self, "")
+        self._on_shutdown = on_shutdown
+        answers: dict[str, Callable[..., object]] = {
+            "requestTopic": self._request,
+            "getPublications": self._publications,
+            "shutdown": self._shutdown,
+        }
+        self._server = SlaveServer(self._host, answers, "")
         threading.Thread(target=self._accept, daemon=True).start()
 
     def register(self) -> None:
@@ -86,7 +98,7 @@ class RawPublisher:
         return self._master.node_uri(self._master.caller) == self._server.uri
 
     def publish(self, topic: str, message: bytes) -> int:
-        """Send to all who listen now; their number. One who does not take it is left out."""
+        """Send to all who listen now, and return their number; one who is too slow is dropped."""
         sent = 0
         data = sized(message)
         with self._lock:
@@ -126,24 +138,17 @@ class RawPublisher:
                 for link in list(links):
                     self._drop(topic, link)
 
-    def _dispatch(self, method: str, arguments: tuple[object, ...]) -> list[object]:
-        """The slave API, as far as one that only publishes is asked."""
-        if method == "requestTopic" and len(arguments) == 3:
-            if arguments[1] not in self._topics:
-                return [0, f"{arguments[1]} is not published here", 0]
-            return [1, "", ["TCPROS", self._host, self._listener.getsockname()[1]]]
-        answers: dict[str, object] = {
-            "getPid": os.getpid(),
-            "getPublications": [[topic, kind.name] for topic, kind in self._topics.items()],
-            "getBusStats": [],
-            "getBusInfo": [],
-            "getSubscriptions": [],
-            "paramUpdate": 0,
-            "publisherUpdate": 0,
-        }
-        if method not in answers:
-            return [0, f"{method} is not for this node", 0]
-        return [1, "", answers[method]]
+    def _request(self, _caller: str, topic: str, _protocols: object) -> list[object]:
+        if topic not in self._topics:
+            raise ValueError(f"{topic} is not published here")
+        return ["TCPROS", self._host, self._listener.getsockname()[1]]
+
+    def _publications(self, _caller: str) -> list[list[str]]:
+        return [[topic, kind.name] for topic, kind in self._topics.items()]
+
+    def _shutdown(self, _caller: str, _reason: str = "") -> int:
+        self._on_shutdown()
+        return 0
 
     def _accept(self) -> None:
         while True:

@@ -1,10 +1,10 @@
 """Records topics of a ROS 1 graph into a bag without losing any message; a program of its own.
 
-All reports of all nodes go through one topic, thousands in a second. Nothing is dropped here: what
-is not yet read waits in the publishers, whose queues for /rosout have no end. Each node numbers
-its messages on /rosout, so a loss would be seen and is counted.
+All reports of all nodes go through one topic, thousands in a second. Nothing is dropped here:
+unread messages wait in the publishers, whose queues for /rosout have no end. Each node numbers its
+messages on /rosout, so each loss is counted.
 
-It runs below ``pytpc.ros.ros1.launch_mission``, which reads the status file that it keeps.
+It runs below ``pytpc.ros.ros1.record_mission``, which reads the status file that it keeps.
 """
 
 from __future__ import annotations
@@ -12,17 +12,15 @@ from __future__ import annotations
 import argparse
 import contextlib
 import os
-import signal
-import struct
-import threading
 import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 from pytpc.base.errors import RunError
+from pytpc.base.signals import stop_on_signals
 from pytpc.ingest.losses import LossCounter
-from pytpc.ingest.ros1 import decode_log, decode_string
+from pytpc.ingest.ros1 import decode_log, decode_string, decode_time
 from pytpc.recording.marks import MarkMessages
 from pytpc.ros.mission_run import RecorderStatus, save_status
 from pytpc.ros.ros1.bag_file import BagFile
@@ -38,7 +36,7 @@ _CLOCK = "/clock"
 _MOST_EARLY = 10_000
 _ROSOUT = "/rosout"
 _REPORTS = "/threshold_information"
-_TIME = struct.Struct("<II")
+_CLOCK_BYTES = 8
 
 
 class Recorder:
@@ -50,7 +48,6 @@ class Recorder:
     def __init__(
         self, bag: BagFile, topics: Sequence[str], until: str | None, sim_time: bool
     ) -> None:
-        """See the class."""
         self._bag = bag
         self._topics = set(topics)
         self._until = until
@@ -76,9 +73,8 @@ class Recorder:
         Raises:
             ValueError: a message that is not of the type of its topic; it is in the bag.
         """
-        if source.topic == _CLOCK and self._sim_time and len(data) >= _TIME.size:
-            seconds, nanoseconds = _TIME.unpack_from(data)
-            self._clock_ns = seconds * 1_000_000_000 + nanoseconds
+        if source.topic == _CLOCK and self._sim_time and len(data) >= _CLOCK_BYTES:
+            self._clock_ns = decode_time(data)
             self._began_ns = self._began_ns or self._clock_ns
         if source.topic in self._topics:
             self._early.append((source, data))
@@ -95,7 +91,7 @@ class Recorder:
             self._done_ns = self.now_ns()
 
     def put_early(self) -> None:
-        """Put what waits for the first /clock into the bag; to be called before it is closed.
+        """Put the messages that wait for the first /clock into the bag; call it before closing.
 
         A clock may begin at any time. Messages from before it get its first time, as if they had
         come with it: at 0 they would make the mission as long as the clock's first time.
@@ -122,8 +118,7 @@ class Recorder:
 class Discovery:
     """Finds the topics of observers as they appear, and a master that has forgotten this node.
 
-    The master is asked once a second. One that does not answer is waited for: what is connected
-    goes on without it.
+    The master is asked once a second. If it does not answer, connected nodes are still recorded.
     """
 
     def __init__(
@@ -202,7 +197,7 @@ class GraphRecorder:
         self._discovery = Discovery(self._subscriber, self._recorder, subscribed)
 
     def step(self) -> RecorderStatus:
-        """Take what has come, wait a moment for more; the account.
+        """Take the messages that have come, wait a moment for more, and return the account.
 
         Raises:
             ValueError: see ``strict``.
@@ -212,7 +207,7 @@ class GraphRecorder:
         return self._recorder.status()
 
     def finish(self) -> RecorderStatus:
-        """Take what is still on the way, leave the graph and close the bag.
+        """Take the messages that are still on the way, leave the graph and close the bag.
 
         Raises:
             ValueError: see ``strict``.
@@ -247,9 +242,7 @@ def record(bag: Path, status: Path, topics: Sequence[str], until: str | None) ->
         RunError: the master does not answer.
         ValueError: a message that is not of the type of its topic.
     """
-    stop = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: stop.set())
+    stop = stop_on_signals()
     master = Master(os.environ["ROS_MASTER_URI"], NODE_NAME)
     graph = GraphRecorder(master, os.environ.get("ROS_IP", "127.0.0.1"), Wanted(topics, until), bag)
     told = 0.0
@@ -262,7 +255,7 @@ def record(bag: Path, status: Path, topics: Sequence[str], until: str | None) ->
 
 
 def main() -> None:
-    """Read the arguments that ``pytpc.ros.ros1.launch_mission`` gives."""
+    """Read the arguments that ``pytpc.ros.ros1.record_mission`` gives."""
     parser = argparse.ArgumentParser(description="records topics into a bag")
     parser.add_argument("--bag", type=Path, required=True)
     parser.add_argument("--status", type=Path, required=True)

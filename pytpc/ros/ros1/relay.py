@@ -1,22 +1,22 @@
 """The node that passes reports on from /rosout to /threshold_information.
 
-For readers that know the topic only, and nodes that report by log messages. What comes is read by
-the raw subscriber, which loses nothing while nodes start; rospy publishes.
+It is for readers that know only the topic, and nodes that report by log messages.
 """
 
 from __future__ import annotations
 
 import os
-import signal
 import threading
 import time
 from collections.abc import Callable, Sequence
 
-from pytpc.base.errors import MissingToolError, RunError
+from pytpc.base.errors import RunError
+from pytpc.base.signals import stop_on_signals
 from pytpc.base.wording import many
 from pytpc.ingest.losses import LossCounter
 from pytpc.ingest.ros1 import decode_log
 from pytpc.ros.ros1.master import Master, own_host, uri_of
+from pytpc.ros.ros1.publisher import STRING, RawPublisher, encode_string
 from pytpc.ros.ros1.subscriber import RawSubscriber
 
 ROSOUT = "/rosout"
@@ -25,7 +25,6 @@ TOPIC = "/threshold_information"
 _NODE = "tpc_relay"
 _REPORT = "threshold_information"
 _ACCOUNTS = ("threshold_summary", "threshold_dropped")
-_QUEUE = 65_536
 _WATCH_S = 2.0
 _POLL_S = 0.2
 
@@ -55,7 +54,6 @@ class Relay:
     """
 
     def __init__(self, publish: Callable[[str], object]) -> None:
-        """See the class."""
         self._publish = publish
         self._counter: LossCounter[str] = LossCounter()
         self.passed_on = 0
@@ -80,7 +78,7 @@ class Relay:
             self.passed_on += 1
 
     def account(self) -> str:
-        """What was done, in one sentence without a full stop."""
+        """How many reports were passed on, in one sentence without a full stop."""
         text = f"{many(self.passed_on, 'report')} passed on"
         if self.lost:
             text += f", {many(self.lost, 'log message')} never came"
@@ -90,7 +88,7 @@ class Relay:
 
 
 class MasterWatch:
-    """Sees that the master went and came back, and registers again then.
+    """Notices that the master went and came back, and registers again.
 
     Args:
         is_known: asks the master whether it knows this node; raises RunError where it does not
@@ -102,7 +100,6 @@ class MasterWatch:
     def __init__(
         self, is_known: Callable[[], bool], register: Callable[[], None], say: Say
     ) -> None:
-        """See the class."""
         self._is_known = is_known
         self._register = register
         self._say = say
@@ -119,60 +116,45 @@ class MasterWatch:
             self._gone = False
         except RunError as error:
             if not self._gone:
-                self._say(f"{error}; what is connected goes on, and the master is waited for")
+                self._say(f"{error}; connected nodes are still heard; waiting for the master")
             self._gone = True
 
 
 def run(arguments: Sequence[str], say: Say) -> None:
-    """Be the node until SIGINT, SIGTERM or the graph ends it.
+    """Relay reports until SIGINT, SIGTERM or the graph ends this node.
 
     Args:
-        arguments: ROS's remappings, as ``__name:=other``; anything else is passed over.
-        say: gets what a user should know, a sentence each.
+        arguments: remappings of ROS, as ``__name:=other``; others are ignored.
+        say: called with each sentence for the user.
 
     Raises:
         RunError: the master does not answer at the start.
-        MissingToolError: rospy is not installed.
     """
-    try:
-        import rospy  # noqa: PLC0415 (a second, and only with ROS)
-        from std_msgs.msg import String  # noqa: PLC0415
-    except ImportError as error:
-        raise MissingToolError(
-            "rospy is not installed; install it with: apt-get install python3-rospy"
-        ) from error
-    stop = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: stop.set())
+    stop = stop_on_signals()
     uri = uri_of(os.environ)
     name = _name(arguments)
-    # First, because rospy waits forever for a master.
     subscriber = RawSubscriber(Master(uri, f"{name}_reader"), own_host(os.environ, uri), [ROSOUT])
+    publisher = RawPublisher(Master(uri, name), {TOPIC: STRING}, on_shutdown=stop.set)
+
+    def register() -> None:
+        publisher.register()
+        subscriber.register()
+
     try:
-        rospy.init_node(
-            name.strip("/"),
-            argv=[_NODE, *(word for word in arguments if ":=" in word)],
-            disable_signals=True,
-            disable_rosout=True,
-        )
-        publisher = rospy.Publisher(TOPIC, String, queue_size=_QUEUE)
-        relay = Relay(lambda line: publisher.publish(String(line)))
-        node = Master(uri, rospy.get_name())
-        watch = MasterWatch(
-            lambda: _knows(node), lambda: _register(subscriber, node, rospy.get_node_uri()), say
-        )
+        publisher.register()
+        relay = Relay(lambda line: publisher.publish(TOPIC, encode_string(line)))
         say(f"passing on reports from {ROSOUT} to {TOPIC}")
-        _serve(subscriber, relay, watch, lambda: stop.is_set() or rospy.is_shutdown())
+        _serve(subscriber, relay, MasterWatch(publisher.is_registered, register, say), stop)
         say(relay.account())
     finally:
         subscriber.close()
-        rospy.signal_shutdown("the relay ends")
+        publisher.close()
 
 
 def _serve(
-    subscriber: RawSubscriber, relay: Relay, watch: MasterWatch, ended: Callable[[], bool]
+    subscriber: RawSubscriber, relay: Relay, watch: MasterWatch, stop: threading.Event
 ) -> None:
-    """Pass on until ``ended``; the watch has a thread, because a dead host answers late."""
+    """Pass on until ``stop``; the watch has a thread, because a dead host answers late."""
 
     def look() -> None:
         while not over.wait(_WATCH_S):
@@ -181,11 +163,11 @@ def _serve(
     over = threading.Event()
     thread = threading.Thread(target=look, daemon=True)
     thread.start()
-    while not ended():
+    while not stop.is_set():
         for source, data in subscriber.poll(_POLL_S):
             relay.take(data, source.node)
     over.set()
-    # What is still on the way.
+    # Messages that are still on the way.
     until = time.monotonic() + 1.0
     while time.monotonic() < until:
         waiting = list(subscriber.poll(0.05))
@@ -193,17 +175,6 @@ def _serve(
             break
         for source, data in waiting:
             relay.take(data, source.node)
-
-
-def _knows(node: Master) -> bool:
-    """Whether the master lists this node among the publishers of the topic."""
-    return node.caller in node.state().publishers.get(TOPIC, ())
-
-
-def _register(subscriber: RawSubscriber, node: Master, uri: str) -> None:
-    # rospy does not register again by itself; subscribers are told by the master.
-    node.call("registerPublisher", TOPIC, "std_msgs/String", uri)
-    subscriber.register()
 
 
 def _name(arguments: Sequence[str]) -> str:

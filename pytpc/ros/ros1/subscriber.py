@@ -3,7 +3,7 @@
 For a recorder that must not lose a message neither rosbag's recorder nor rospy will do: the first
 drops what does not fit into 100 places, and of the second, when many nodes start at once, two
 threads connect to one publisher, which then drops one connection a second later, with what was in
-it. Here each publisher of a topic has one connection, and what is not yet read waits in it.
+it. Here each publisher of a topic has one connection, in which unread messages wait.
 
 The protocols: http://wiki.ros.org/ROS/Slave_API, http://wiki.ros.org/ROS/TCPROS.
 """
@@ -11,12 +11,11 @@ The protocols: http://wiki.ros.org/ROS/Slave_API, http://wiki.ros.org/ROS/TCPROS
 from __future__ import annotations
 
 import contextlib
-import os
 import selectors
 import socket
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import cast
 
@@ -47,10 +46,9 @@ class Source:
 
 
 class Frames:
-    """Cuts a stream of bytes into messages, each of which stands after its length."""
+    """Cuts a stream of bytes into messages; each comes after its length."""
 
     def __init__(self) -> None:
-        """Nothing was received yet."""
         self._buffer = bytearray()
 
     def feed(self, data: bytes) -> list[bytes]:
@@ -107,7 +105,7 @@ class RawSubscriber:
         self._selector = selectors.DefaultSelector()
         self._wake_receive, self._wake_send = socket.socketpair()
         self._selector.register(self._wake_receive, selectors.EVENT_READ)
-        self._server = SlaveServer(host, _SlaveApi(self._on_publishers), host)
+        self._server = SlaveServer(host, {"publisherUpdate": self._update}, host)
         try:
             for topic in topics:
                 self.subscribe(topic)
@@ -116,7 +114,7 @@ class RawSubscriber:
             raise
 
     def subscribe(self, topic: str) -> None:
-        """Subscribe to a further topic; or to one again, of which the master does not know.
+        """Subscribe to a further topic, or again to one that the master has forgotten.
 
         Raises:
             RunError: the master does not answer or refuses.
@@ -136,7 +134,7 @@ class RawSubscriber:
             self.subscribe(topic)
 
     def poll(self, timeout_s: float) -> Iterator[tuple[Source, bytes]]:
-        """Wait for messages and give those that came; none after ``timeout_s`` without any."""
+        """Wait for messages and yield those that came; none after ``timeout_s`` without any."""
         for key, _ in self._selector.select(timeout_s):
             if key.data is None:
                 self._wake_receive.recv(4096)
@@ -177,8 +175,12 @@ class RawSubscriber:
         self._selector.close()
         self._wake_send.close()
 
+    def _update(self, _caller: str, topic: str, publishers: Sequence[str]) -> int:
+        self._on_publishers(topic, publishers)
+        return 0
+
     def _on_publishers(self, topic: str, publishers: Sequence[str]) -> None:
-        """The publishers of a topic are these now; connect to those that are new."""
+        """Connect to the new ones among the publishers that a topic has now."""
         with self._lock:
             if topic not in self._wanted:
                 return
@@ -220,25 +222,6 @@ class RawSubscriber:
         self._selector.unregister(connection)
         connection.close()
         threading.Thread(target=self._connect, args=(link.key,), daemon=True).start()
-
-
-class _SlaveApi:
-    """What the master and other nodes ask of a node, as far as one that only listens is asked."""
-
-    def __init__(self, on_publishers: Callable[[str, list[str]], None]) -> None:
-        self._on_publishers = on_publishers
-
-    def _dispatch(self, method: str, arguments: tuple[object, ...]) -> list[object]:
-        if method == "publisherUpdate" and len(arguments) == 3:
-            self._on_publishers(str(arguments[1]), cast(list[str], arguments[2]))
-            return [1, "", 0]
-        if method == "getPid":
-            return [1, "", os.getpid()]
-        if method in ("getBusStats", "getBusInfo", "getSubscriptions", "getPublications"):
-            return [1, "", []]
-        if method == "paramUpdate":
-            return [1, "", 0]
-        return [0, f"{method} is not for this node", 0]
 
 
 def _open(topic: str, publisher: str, name: str) -> tuple[socket.socket, Source]:

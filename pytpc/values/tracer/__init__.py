@@ -1,1 +1,1 @@
-"""What runs with roslaunch's Python, alone in its folder: Python looks for modules there first."""
+"""A program for roslaunch's Python, alone in its folder: Python looks for modules there first."""

@@ -7,7 +7,7 @@ started, and what a ``<param command=...>`` would run is not run: a command may 
     python3 launch_tracer.py FILE [NAME:=VALUE]...
 
 It prints one JSON object: ``parameters`` by full name, each a list of settings of which the last
-holds; ``nodes``; ``arguments`` by name with where they were set; ``files`` with their SHA-256.
+holds; ``nodes`` as `pytpc.values.trace.LaunchNode` has them; ``files`` with their SHA-256.
 """
 
 from __future__ import annotations
@@ -76,7 +76,6 @@ class _Tracer(XmlLoader):  # type: ignore[misc]
         # Whether an <arg> is missing is roslaunch's to say.
         self.ignore_unset_args = False
         self.files: dict[str, str] = {}
-        self.arguments: list[dict[str, Any]] = []
         self.nodes: list[dict[str, Any]] = []
         self.of_nodes: list[tuple[str, dict[str, Any]]] = []
         self._via: list[str] = []
@@ -190,7 +189,9 @@ class _Tracer(XmlLoader):  # type: ignore[misc]
         if node is not None:
             full = canonicalize_name(ns_join(node.namespace, node.name))
             here = self._here(tag, context)
-            self.nodes.append({**here, "name": full, "pkg": node.package, "type": node.type})
+            place = {"path": here["file"], "lineno": here["lineno"], "offset": here["offset"]}
+            what = {"name": full, "package": node.package, "program": node.type}
+            self.nodes.append({**what, **place})
             # The node sets these itself when it starts, so they come after all others.
             for name, value in _PRIVATE.findall(node.args or ""):
                 written = f"_{name}:={value}"
@@ -217,7 +218,6 @@ class _Tracer(XmlLoader):  # type: ignore[misc]
             value = _Placed(after)
             value.place = {**place, "value": str(after)}
             self._arguments_of(context)[name] = value
-            self.arguments.append(value.place)
         return result
 
     @staticmethod
@@ -261,10 +261,6 @@ def _guessed(text: str) -> bool | int | float | str:
     return {"true": True, "false": False}.get(text.lower(), text)
 
 
-def _no_json(_value: object) -> None:
-    """What JSON has no form for (binary data, dates) is null."""
-
-
 def main(argv: list[str]) -> None:
     """See the module; status 1 and a line on standard error where roslaunch would not start."""
     config = _Config()
@@ -280,11 +276,10 @@ def main(argv: list[str]) -> None:
     answer = {
         "parameters": config.settings,
         "nodes": tracer.nodes,
-        "arguments": tracer.arguments,
         "files": tracer.files,
-        "errors": [str(text) for text in config.config_errors],
     }
-    json.dump(answer, sys.stdout, default=_no_json)
+    # What JSON has no form for (binary data, dates) is null.
+    json.dump(answer, sys.stdout, default=lambda _value: None)
 
 
 if __name__ == "__main__":

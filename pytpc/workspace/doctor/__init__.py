@@ -1,4 +1,4 @@
-"""What would keep a build with TPC from working, found before it is started.
+"""Finds what would keep a build with TPC from working, before it is started.
 
-``machine`` and ``workspace`` have the checks, which are functions of what ``look`` has seen.
+``machine`` and ``workspace`` look first; their checks are functions of what was seen.
 """

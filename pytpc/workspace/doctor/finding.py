@@ -1,13 +1,14 @@
-"""What a check finds."""
+"""A problem that a check found, and how bad it is."""
 
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from enum import Enum
+from functools import partial
 
 
 class Severity(Enum):
-    """How bad it is; the order is that of the members."""
+    """How bad a problem is, the worst first."""
 
     ERROR = "error"  # a build does not work
     WARNING = "warning"  # it works, with less than could be
@@ -31,19 +32,15 @@ class Finding:
         return {**asdict(self), "severity": self.severity.value}
 
 
-def error(what: str, where: object = None, mend: str | None = None) -> Finding:
-    """A finding that keeps a build from working."""
-    return Finding(Severity.ERROR, what, None if where is None else str(where), mend)
+def _finding(
+    severity: Severity, what: str, where: object = None, mend: str | None = None
+) -> Finding:
+    return Finding(severity, what, None if where is None else str(where), mend)
 
 
-def warning(what: str, where: object = None, mend: str | None = None) -> Finding:
-    """A finding with which a build does less than it could."""
-    return Finding(Severity.WARNING, what, None if where is None else str(where), mend)
-
-
-def note(what: str, where: object = None, mend: str | None = None) -> Finding:
-    """A finding that is good to know."""
-    return Finding(Severity.NOTE, what, None if where is None else str(where), mend)
+error = partial(_finding, Severity.ERROR)
+warning = partial(_finding, Severity.WARNING)
+note = partial(_finding, Severity.NOTE)
 
 
 def by_severity(findings: list[Finding]) -> list[Finding]:

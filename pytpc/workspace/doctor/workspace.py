@@ -1,7 +1,11 @@
-"""Checks of a workspace: packages, what they need, build folders. No check touches it."""
+"""Checks of a workspace: packages, what they need, build folders. Nothing is changed.
+
+``look_at_workspace`` and ``look_at_known`` read; the checks are functions of what these have seen.
+"""
 
 from __future__ import annotations
 
+import os
 import re
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
@@ -9,17 +13,32 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pytpc.base.errors import InputError, WorkspaceError
+from pytpc.base.paths import OWN_FOLDER, ROS_PREFIXES, prefix, sourced_prefixes
 from pytpc.workspace.cmake_block import patch_text, restore_text
-from pytpc.workspace.cmake_syntax import UTF8_BOM, Kind, command_names, find_fault, tokens
+from pytpc.workspace.cmake_syntax import UTF8_BOM, Kind, commands, find_fault, tokens
 from pytpc.workspace.doctor.finding import Finding, error, note, warning
-from pytpc.workspace.doctor.machine import UNSUITED
-from pytpc.workspace.packages import MANIFEST, Manifest, find_cycle
+from pytpc.workspace.doctor.machine import UNSUITED, output_of
+from pytpc.workspace.packages import (
+    MANIFEST,
+    Manifest,
+    find_cycle,
+    package_folders,
+    read_list_file,
+    read_manifest,
+)
 
 _COMMENTS = (Kind.LINE_COMMENT, Kind.BRACKET_COMMENT)
 _CMAKE_BUILD_TYPES = ("catkin", "cmake", "ament_cmake")
 
-# Clang itself, or what CMake takes of itself: there tpc.cmake puts clang in its place.
+# clang, or CMake's own choice, which tpc.cmake replaces by clang.
 _REPLACED = re.compile(r"clang(\+\+)?-19$|(^|/)c(c|\+\+)$")
+
+
+_CACHE = "CMakeCache.txt"
+_CACHE_LINE = re.compile(r"^(\w+):\w+=(.*)$", re.MULTILINE)
+# The deepest build folder is .tpc/build/PACKAGE.
+_BUILD_DEPTH = 3
+_ODD_NAMES = 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +67,7 @@ class BuildFolder:
 
 @dataclass(frozen=True, slots=True)
 class SeenWorkspace:
-    """What was seen of a workspace; ``odd_names`` are files whose names are not UTF-8."""
+    """What ``look_at_workspace`` saw; ``odd_names`` are files whose names are not UTF-8."""
 
     folder: Path
     packages: Sequence[SeenPackage]
@@ -59,7 +78,7 @@ class SeenWorkspace:
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """What there is outside of the workspace.
+    """The packages and builds that TPC knows outside of the workspace.
 
     ``packages`` have a package.xml in a prefix that CMake looks in; ``debian`` are the packages
     that apt offers, ``installed`` those that dpkg has.
@@ -70,6 +89,96 @@ class Known:
     installed: frozenset[str]
     cmake_file: str
     own_builds: Path
+
+
+def look_at_workspace(workspace: Path) -> SeenWorkspace:
+    """See which packages and build folders a workspace has.
+
+    Raises:
+        WorkspaceError: no such folder.
+        MissingToolError: catkin_pkg is not installed.
+    """
+    if not workspace.is_dir():
+        raise WorkspaceError("no such folder", workspace)
+    folder = workspace.absolute()
+    return SeenWorkspace(
+        folder,
+        [_look_at_package(found) for found in package_folders(folder)],
+        list(_build_folders(folder)),
+        _odd_names(folder),
+        os.access(folder, os.W_OK | os.X_OK),
+    )
+
+
+def look_at_known(workspace: Path) -> Known:
+    """See which packages CMake's prefixes, apt and dpkg have."""
+    prefixes = [*sourced_prefixes(), *ROS_PREFIXES]
+    shares = [path for one in prefixes for path in (one / "share").glob(f"*/{MANIFEST}")]
+    installed = output_of(["dpkg-query", "-W", "-f", "${Package} ${db:Status-Status}\n"])
+    return Known(
+        packages=frozenset(path.parent.name for path in shares),
+        debian=frozenset(output_of(["apt-cache", "pkgnames"]).split()),
+        installed=frozenset(
+            line.split()[0] for line in installed.splitlines() if line.endswith(" installed")
+        ),
+        cmake_file=str(prefix() / "share/tpc/cmake/tpc.cmake"),
+        own_builds=workspace.absolute() / OWN_FOLDER,
+    )
+
+
+def read_cache(text: str, folder: Path) -> BuildFolder:
+    """Read the build folder's settings from its CMakeCache.txt."""
+    values = dict(_CACHE_LINE.findall(text))
+    return BuildFolder(
+        folder,
+        Path(values.get("CMAKE_HOME_DIRECTORY", "")),
+        values.get("CMAKE_CXX_COMPILER") or values.get("CMAKE_C_COMPILER", ""),
+        values.get("CMAKE_TOOLCHAIN_FILE", ""),
+    )
+
+
+def _look_at_package(folder: Path) -> SeenPackage:
+    path = folder / "CMakeLists.txt"
+    manifest: Manifest | InputError
+    lists: bytes | InputError | None
+    try:
+        manifest = read_manifest(folder)
+    except InputError as fault:
+        manifest = fault
+    try:
+        lists = read_list_file(path)
+        if lists is None and path.is_symlink():
+            lists = InputError("a symbolic link that leads nowhere", path)
+    except InputError as fault:
+        lists = fault
+    return SeenPackage(folder, manifest, lists, os.access(folder, os.W_OK | os.X_OK))
+
+
+def _build_folders(workspace: Path) -> Iterator[BuildFolder]:
+    for here, below, files in os.walk(workspace):
+        folder = Path(here)
+        if _CACHE in files:
+            below.clear()
+            yield read_cache((folder / _CACHE).read_text("utf-8", "replace"), folder)
+        elif len(folder.relative_to(workspace).parts) >= _BUILD_DEPTH:
+            below.clear()
+        below[:] = sorted(name for name in below if name == OWN_FOLDER or not name.startswith("."))
+
+
+def _odd_names(workspace: Path) -> list[str]:
+    """Paths with names that are not UTF-8, at most twenty, shown with escapes."""
+    found: list[str] = []
+    for here, below, files in os.walk(workspace):
+        below[:] = sorted(name for name in below if not name.startswith("."))
+        for name in sorted([*below, *files]):
+            try:
+                name.encode()
+            except UnicodeEncodeError:
+                path = os.fsencode(Path(here) / name)
+                found.append(path.decode("utf-8", "backslashreplace"))
+                if len(found) == _ODD_NAMES:
+                    return found
+    return found
 
 
 def check_workspace(seen: SeenWorkspace, known: Known) -> list[Finding]:
@@ -95,7 +204,7 @@ def check_workspace(seen: SeenWorkspace, known: Known) -> list[Finding]:
 
 
 def debian_names(name: str, *, distribution: str | None = None) -> list[str]:
-    """What Debian, or the archive of a ROS distribution, may call a package; the likeliest first.
+    """The names that Debian or a ROS distribution may have for a package; the likeliest first.
 
     Debian has roscpp as libroscpp-dev, rospy as python3-rospy, message_generation as
     ros-message-generation, catkin as catkin.
@@ -137,7 +246,7 @@ def _package(package: SeenPackage, known: Known) -> Iterator[Finding]:
     if fault is not None:
         yield error(f"CMake cannot parse this file: {fault.message}", f"{path}:{fault.line}")
         return
-    if not any(name == "project" for name, _ in command_names(package.lists)):
+    if not any(command.name == "project" for command in commands(package.lists)):
         yield error(
             "does not call project() itself",
             path,

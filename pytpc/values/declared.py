@@ -1,8 +1,13 @@
-"""Reads the declarations in ``.cfg`` files of dynamic_reconfigure without running them.
+"""Reads declarations of parameters: in ``.cfg`` files, and in recorded messages.
 
-Followed is what nearly all of these files consist of: constants and arithmetic with them, names,
-lists, groups, ``const``, ``enum`` and ``add``, and loops over known values. Everything else (calls
-of other functions with the generator, values from elsewhere) is reported and left out.
+``read_declared`` is the entrance. It reads the ``.cfg`` files of dynamic_reconfigure below folders
+of sources, and the descriptions that its servers published, where a bag has them. Descriptors of
+ROS 2 are not read: they exist in the running program only, and no topic carries them.
+
+No ``.cfg`` file is run. Nearly all of these files consist of constants and arithmetic with them,
+names, lists, groups, ``const``, ``enum`` and ``add``, and loops over known values, which are
+followed. Everything else (calls of other functions with the generator, values from elsewhere) is
+reported and left out.
 """
 
 from __future__ import annotations
@@ -10,12 +15,18 @@ from __future__ import annotations
 import ast
 import math
 import operator
+import os
 import re
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from pytpc.ingest.declared_bag import read_declared_bag
 from pytpc.recording.declaration import Declared, RawValues, make_declared
+from pytpc.static.static_info import StaticInfo
+
+_LARGEST_FILE = 1 << 20
+_NOT_SOURCES = frozenset({"build", "devel", "install", "log", "node_modules", "__pycache__"})
 
 _TYPES = {"str_t": "str", "bool_t": "bool", "int_t": "int", "double_t": "double"}
 _ADD = ("name", "paramtype", "level", "description", "default", "min", "max", "edit_method")
@@ -58,9 +69,6 @@ _FUNCTIONS: dict[str, Callable[..., object]] = {
 _NAMES: dict[str, object] = {
     "math.pi": math.pi,
     "pi": math.pi,
-    "True": True,
-    "False": False,
-    "None": None,
     "numpy.pi": math.pi,
     "np.pi": math.pi,
 }
@@ -75,8 +83,75 @@ class _Generator:
     """A ParameterGenerator, or a group of one."""
 
 
+def read_declared(
+    paths: Iterable[Path], on_skipped: Callable[[str], None] | None = None
+) -> list[Declared]:
+    """The declarations in files and below folders, in the order of the paths.
+
+    Args:
+        paths: ``.cfg`` files, ROS 1 bags, and folders that have such files: sources (hidden and
+            build folders are skipped) or a recorded mission. A path that does not exist has none.
+        on_skipped: called with one line for each declaration or file that could not be read.
+    """
+    found: list[Declared] = []
+    for path in dict.fromkeys(file for given in paths for file in _declaring_files(given)):
+        try:
+            some, skipped = _read(path)
+        except OSError as error:
+            some, skipped = [], [f"{path}: {error.strerror or error}"]
+        found += some
+        for line in skipped if on_skipped is not None else ():
+            on_skipped(line)  # type: ignore[misc]
+    return found
+
+
+def declared_in(
+    static_info: StaticInfo,
+    recordings: Iterable[Path] = (),
+    on_skipped: Callable[[str], None] | None = None,
+) -> list[Declared]:
+    """The declarations in the packages of ``static_info``, and in what was recorded."""
+    roots = sorted({Path(unit.source_root) for unit in static_info.units})
+    tops = [root for root in roots if not any(above in roots for above in root.parents)]
+    return read_declared([*tops, *recordings], on_skipped)
+
+
+def _read(path: Path) -> tuple[list[Declared], list[str]]:
+    """The declarations of one file, and a line for each that could not be read.
+
+    Raises:
+        OSError: the file cannot be read.
+    """
+    if path.suffix == ".bag":
+        return read_declared_bag(path)
+    if path.stat().st_size > _LARGEST_FILE:
+        return [], [f"{path}: too large"]
+    text = path.read_bytes()
+    if _GENERATOR.encode() not in text:
+        return [], []
+    found, skipped = read_cfg(text, path)
+    package = str(_package_of(path))
+    return [replace(one, package=package) for one in found], skipped
+
+
+def _declaring_files(path: Path) -> list[Path]:
+    if path.is_file():
+        return [path]
+    found = []
+    for folder, below, files in os.walk(path):
+        below[:] = sorted(b for b in below if not b.startswith(".") and b not in _NOT_SOURCES)
+        found += [Path(folder, name) for name in sorted(files) if name.endswith((".cfg", ".bag"))]
+    return found
+
+
+def _package_of(source: Path) -> Path:
+    """The folder of the package that a file belongs to; its own folder if there is no package."""
+    above = (folder for folder in source.parents if (folder / "package.xml").is_file())
+    return next(above, source.parent)
+
+
 def read_cfg(text: bytes, path: Path) -> tuple[list[Declared], list[str]]:
-    """What a file declares, in its order, and what of it is not followed, a line each.
+    """The declarations of a file, in its order, and a line for each that cannot be followed.
 
     Args:
         text: the file.
@@ -149,8 +224,7 @@ class _CfgReader:
             self._value(call)
         except _UnknownError as why:
             # What has nothing to do with the generator declares nothing.
-            words = [call.func, *call.args, *(keyword.value for keyword in call.keywords)]
-            if any(self._is_generator(node) for word in words for node in ast.walk(word)):
+            if self._mentions_generator([call]):
                 self.skip(call.lineno, f"{_source(call)}: {why}")
 
     def _loop(self, name: str, over: ast.expr, body: list[ast.stmt]) -> None:
@@ -167,10 +241,11 @@ class _CfgReader:
         try:
             self.run(body if self._value(test) else orelse)
         except _UnknownError:
-            if any(
-                self._is_generator(node) for part in (*body, *orelse) for node in ast.walk(part)
-            ):
+            if self._mentions_generator([*body, *orelse]):
                 self.skip(test.lineno, f"it depends on {_source(test)}")
+
+    def _mentions_generator(self, parts: Iterable[ast.AST]) -> bool:
+        return any(self._is_generator(node) for part in parts for node in ast.walk(part))
 
     def _is_generator(self, node: ast.AST) -> bool:
         return isinstance(node, ast.Name) and isinstance(self._values.get(node.id), _Generator)

@@ -1,18 +1,68 @@
-"""The command that runs a node with reports: its interpreter, or a C++ node itself."""
+"""How nodes are started so that they report: the environment, and the command of one node.
+
+Unchanged Python nodes report if three variables are set (docs/reference/python-runtime.md). A
+mission sets them, and so does a user's shell.
+"""
 
 from __future__ import annotations
 
 import os
 import shlex
 import shutil
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from pytpc import python_runtime
 from pytpc.base.errors import InputError
+from pytpc.python_runtime.errors import HookError
+from pytpc.python_runtime.listed import read_table
 
+ON_PATH = Path(python_runtime.__file__).resolve().parent / "on_path"
+SWITCH = "TPC_PYTHON"
+STATIC = "TPC_STATIC"
+_MODULES = "PYTHONPATH"
 _RUN = Path(python_runtime.__file__).resolve().parent / "run.py"
 _LONGEST_LINE = 512
+
+
+def has_python(static: Path) -> bool:
+    """Whether a file of static information has comparisons in Python sources.
+
+    Raises:
+        InputError: it cannot be read, or is not static information.
+    """
+    try:
+        return len(read_table([str(static)])) > 0
+    except HookError as error:
+        raise InputError(error.message, error.path, error.line) from error
+
+
+def with_python(env: Mapping[str, str], static: Path) -> dict[str, str]:
+    """The environment ``env``, in which the Python nodes of ``static`` report."""
+    return {
+        **env,
+        SWITCH: "1",
+        STATIC: str(static.absolute()),
+        _MODULES: os.pathsep.join([str(ON_PATH), *_other_folders(env)]),
+    }
+
+
+def without_python(env: Mapping[str, str]) -> dict[str, str]:
+    """The environment that ``with_python`` was given."""
+    others = _other_folders(env)
+    rest = {name: value for name, value in env.items() if name not in (SWITCH, STATIC, _MODULES)}
+    return {**rest, _MODULES: os.pathsep.join(others)} if others else rest
+
+
+def mission_env(env: Mapping[str, str], static: Path) -> dict[str, str]:
+    """The environment ``env`` of nodes, with reports of those in Python where there are any.
+
+    Raises:
+        InputError: ``static`` is there, and cannot be read.
+    """
+    if static.is_file() and has_python(static):
+        return with_python(env, static)
+    return dict(env)
 
 
 def command_of(
@@ -64,3 +114,9 @@ def interpreter_of(node: Path) -> list[str] | None:
     if found is None:
         raise InputError("python3 is not installed", node)
     return [found]
+
+
+def _other_folders(env: Mapping[str, str]) -> list[str]:
+    folders = env[_MODULES].split(os.pathsep) if env.get(_MODULES) else []
+    # An empty one is Python's own word for the current folder.
+    return [folder for folder in folders if folder != str(ON_PATH)]

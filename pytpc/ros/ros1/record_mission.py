@@ -1,21 +1,21 @@
-"""Runs one mission on a real ROS graph and records it.
+"""Records a mission: of a launch file that it starts, or of the graph that runs.
 
-``run_mission`` leaves in the folder that it is given: ``mission.bag``, ``params.yaml`` (what stood
-on the parameter server at the end; ``params_start.yaml`` right after the launch), ``origins.json``
-(where these values came from), ``run.json`` (how it went), ``tpc/`` (the files of nodes with the
-sink ``file``) and ``ros/`` (the output of all processes).
+The folder gets the files that ``pytpc.ros.mission_run`` names. A launch file's also gets ``ros/``
+with the output of all processes.
 """
 
 from __future__ import annotations
 
 import contextlib
+import os
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from pytpc.base.errors import RunError
+from pytpc.base.errors import MissingToolError, RunError
 from pytpc.base.paths import project_root
 from pytpc.recording.mission import REPORTS_FOLDER
 from pytpc.ros.mission_run import (
@@ -27,14 +27,15 @@ from pytpc.ros.mission_run import (
     RecorderStatus,
     RecordOptions,
     clear_earlier,
-    marks_of,
     read_status,
     save_run,
 )
 from pytpc.ros.ros1 import recorder
 from pytpc.ros.ros1.graph import GraphProcess, RosGraph
+from pytpc.ros.ros1.master import Master, own_host, uri_of
+from pytpc.ros.ros1.recorder import NODE_NAME, GraphRecorder, Wanted
 from pytpc.values.origins import START_FILE
-from pytpc.values.recording import save_origins, try_trace
+from pytpc.values.recording import MISSION_PATIENCE_S, NO_LAUNCH, save_origins, try_trace
 from pytpc.values.trace import Trace, name_on_server
 
 _POLL_S = 0.1
@@ -43,6 +44,7 @@ _CLOCK_PATIENCE_S = 30.0
 _LAUNCH_PATIENCE_S = 20.0
 _DUMP_PATIENCE_S = 20.0
 _SET_PATIENCE_S = 10.0
+_TOLD_S = 0.2
 
 
 def launch_command(launch: Path, args: Mapping[str, str]) -> list[str]:
@@ -96,7 +98,7 @@ def run_mission(
         started = graph.start("roslaunch", command, patience_s=_LAUNCH_PATIENCE_S, may_end=True)
         watch = _Watch(graph, started, out_dir, began, options.on_progress)
         watch.wait_for_parameters(trace)
-        # Without it less is known of where values came from, and that is all.
+        # Without it only less is known about the origins of values.
         with contextlib.suppress(RunError):
             dump_params(graph.env, out_dir / START_FILE)
         if use_sim_time:
@@ -110,8 +112,19 @@ def run_mission(
         said = "; ".join(recording.tail()) or "it says nothing"
         raise RunError(f"the recorder did not finish: {said}", recording.log)
     run = MissionRun.of(status, out_dir, ended, time.monotonic() - began)
+    return _saved(run, options, trace, reason, install_env)
+
+
+def _saved(
+    run: MissionRun,
+    options: RecordOptions,
+    trace: Trace | None,
+    reason: str,
+    env: Mapping[str, str],
+) -> MissionRun:
+    """Write how the mission went and where its values came from."""
     save_run(run, options)
-    save_origins(out_dir, out_dir / PARAMS_FILE, trace, reason, install_env)
+    save_origins(options.out_dir, run.params, trace, reason, env)
     return run
 
 
@@ -145,7 +158,7 @@ def _start_recorder(graph: RosGraph, options: RecordOptions) -> GraphProcess:
 
 
 class _Watch:
-    """Looks at a running mission from the side."""
+    """Watches a running mission."""
 
     def __init__(
         self,
@@ -165,14 +178,11 @@ class _Watch:
         self._graph.check()
         status = read_status(self._status_path) or RecorderStatus()
         if self._on_progress is not None:
-            marks = marks_of(status.messages)
-            wall_s = time.monotonic() - self._began
-            sim_s = (status.now_ns - status.began_ns) / 1e9
-            self._on_progress(Progress(sim_s, wall_s, status.reports, marks))
+            self._on_progress(Progress.of(status, time.monotonic() - self._began))
         return status
 
     def wait_for_parameters(self, trace: Trace | None) -> None:
-        """Until roslaunch has set what the launch file sets, which it does before any node runs."""
+        """Wait until roslaunch has set the parameters; it does so before any node runs."""
         wanted = set() if trace is None else trace.by_roslaunch
         limit = time.monotonic() + _SET_PATIENCE_S
         while time.monotonic() < limit and not self._launched.has_ended_well:
@@ -190,8 +200,7 @@ class _Watch:
         while self.look().now_ns == 0 and not self._launched.has_ended_well:
             if time.monotonic() > limit:
                 raise RunError(
-                    f"no /clock for {_CLOCK_PATIENCE_S:.0f} s: where no simulator runs, say"
-                    " --wall-time"
+                    f"no /clock for {_CLOCK_PATIENCE_S:.0f} s: without a simulator, use --wall-time"
                 )
             time.sleep(_POLL_S)
 
@@ -218,7 +227,7 @@ def _stands(name: str, known: set[str]) -> bool:
 
 
 def dump_params(env: Mapping[str, str], path: Path) -> None:
-    """Write what stands on the parameter server.
+    """Write the values of the parameter server.
 
     Raises:
         RunError: rosparam is not there, or fails.
@@ -240,3 +249,106 @@ def dump_params(env: Mapping[str, str], path: Path) -> None:
         said = error.stderr.decode("utf-8", "replace").strip().splitlines()[-1:]
         raise RunError(f"rosparam dump failed: {' '.join(said)}") from error
     beside.replace(path)
+
+
+def record_graph(
+    options: RecordOptions, *, stop: threading.Event, env: Mapping[str, str] | None = None
+) -> MissionRun:
+    """Record /rosout, /threshold_information, all observers' marks and the topics asked for.
+
+    The folder gets mission.bag, run.json and, where rosparam is there, params_start.yaml,
+    params.yaml and origins.json.
+
+    Args:
+        options: the folder, and when the recording ends beside ``stop``.
+        stop: ends the recording.
+        env: says where the master is and what this machine is called; None: that of this process.
+
+    Raises:
+        RunError: the master does not answer, or the folder has a recording: a robot's mission
+            cannot be flown again, as a simulated one can.
+        OSError: the bag cannot be written; what was recorded is in ``mission.bag.active``.
+    """
+    env = os.environ if env is None else env
+    out_dir, on_progress = options.out_dir, options.on_progress
+    _refuse_earlier(out_dir)
+    out_dir.mkdir(parents=True, exist_ok=True)
+    began = time.monotonic()
+    uri = uri_of(env)
+    recorder = GraphRecorder(
+        Master(uri, f"{NODE_NAME}_{os.getpid()}"),
+        own_host(env, uri),
+        Wanted([*DEFAULT_TOPICS, *options.topics], options.until or None),
+        out_dir / BAG_FILE,
+        strict=False,
+    )
+    beginning = _Beginning(env, options)
+    try:
+        beginning.start()
+        ended, told = "", 0.0
+        while not ended:
+            status = recorder.step()
+            wall_s = time.monotonic() - began
+            if on_progress is not None and time.monotonic() - told > _TOLD_S:
+                told = time.monotonic()
+                on_progress(Progress.of(status, wall_s))
+            if stop.is_set():
+                ended = "interrupted"
+            elif status.done:
+                ended = "done"
+            elif options.timeout_s is not None and wall_s > options.timeout_s:
+                ended = "timeout"
+    except BaseException:
+        recorder.leave()
+        raise
+    status = recorder.finish()
+    trace, reason = beginning.ended()
+    _try_dump(env, out_dir / PARAMS_FILE)
+    run = MissionRun.of(status, out_dir, ended, time.monotonic() - began)
+    return _saved(run, options, trace, reason, env)
+
+
+class _Beginning(threading.Thread):
+    """Asks for the values at the beginning, and reads the launch file, while the bag is written.
+
+    Both may take many seconds, in which the robot goes on.
+    """
+
+    def __init__(self, env: Mapping[str, str], options: RecordOptions) -> None:
+        super().__init__(name="beginning", daemon=True)
+        self._env, self._out_dir = env, options.out_dir
+        self._launch, self._args = options.launch, options.args
+        self._found: tuple[Trace | None, str] | None = None
+
+    def run(self) -> None:
+        _try_dump(self._env, self._out_dir / START_FILE)
+        if self._launch is not None:
+            self._found = try_trace(self._env, self._launch, self._args)
+
+    def ended(self) -> tuple[Trace | None, str]:
+        """Wait for the launch file to be read; its values, or why they are not known."""
+        self.join(2 * MISSION_PATIENCE_S)
+        if self._launch is None:
+            return None, NO_LAUNCH
+        return self._found or (None, f"{self._launch} was not read in time")
+
+
+def _try_dump(env: Mapping[str, str], path: Path) -> None:
+    """Write the values of the parameter server, or nothing.
+
+    The master may be gone, or rosparam not be installed, and the bag is what matters.
+    """
+    try:
+        dump_params(env, path)
+    except (RunError, MissingToolError):
+        path.unlink(missing_ok=True)
+
+
+def _refuse_earlier(out_dir: Path) -> None:
+    bag = out_dir / BAG_FILE
+    active = bag.with_name(f"{bag.name}.active")
+    if bag.exists():
+        raise RunError("already has a recording; give another folder", out_dir)
+    if active.exists():
+        what = "is an unfinished recording; recover it with rosbag reindex, or give another folder"
+        raise RunError(what, active)
