@@ -45,7 +45,6 @@ class Reports:
     """
 
     def __init__(self) -> None:
-        """Nothing was read yet."""
         self._counter: LossCounter[str] = LossCounter()
         self._logged: Counter[str] = Counter()
         self._order: deque[tuple[float, str]] = deque()

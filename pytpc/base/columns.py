@@ -126,7 +126,6 @@ class WordTable:
         return cls.of(keys=keys, nodes=(), **{name: [] for name in cls.kinds})
 
     def __len__(self) -> int:
-        """The number of rows."""
         return int(getattr(self, self.order).size)
 
     def columns(self) -> Columns:

@@ -107,7 +107,6 @@ class RecordBlock(ReportColumns):
     steady: Int64s
 
     def __len__(self) -> int:
-        """How many reports."""
         return int(self.steady.size)
 
     def part(self, rows: slice | Int64s | Bools) -> RecordBlock:

@@ -38,7 +38,6 @@ class Merged:
     _once: Once = field(init=False)
 
     def __post_init__(self) -> None:
-        """Sort the words."""
         self.gathering.flush()
         self.keys, self._key_places = sorted_words(self.gathering.keys.codes)
         self.nodes, self._node_places = sorted_words(self.gathering.nodes.codes)

@@ -61,7 +61,6 @@ class Spool:
         self._written = 0
 
     def __len__(self) -> int:
-        """The number of rows."""
         return self._held_rows + sum(run.count for run in self._runs)
 
     def append(self, rows: Rows) -> None:

@@ -87,11 +87,9 @@ class TableSequence(Sequence[Item]):
     def __getitem__(self, index: slice) -> tuple[Item, ...]: ...
 
     def __getitem__(self, index: int | slice) -> Item | tuple[Item, ...]:
-        """One of them."""
         return self.items[index]
 
     def __str__(self) -> str:
-        """The table as text."""
         return str(self.table())
 
     def _repr_html_(self) -> str:

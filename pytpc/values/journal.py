@@ -68,7 +68,6 @@ class Journal:
     """The changes that can be undone."""
 
     def __init__(self, folder: Path) -> None:
-        """The folder need not exist."""
         self._folder = folder
 
     @contextlib.contextmanager

@@ -54,7 +54,6 @@ class StudyProgress:
         self._told = time.monotonic()
 
     def __enter__(self) -> Self:
-        """Show the bar."""
         self._bar.start()
         return self
 

@@ -93,13 +93,13 @@ def load_missions(
     """Read missions.
 
     Args:
-        paths: what `pytpc.ingest.read` takes; a folder that is no recording stands for the missions
+        paths: what `pytpc.ingest.reading.read` takes; a folder that is no recording stands for the missions
             in its folders.
         treatments: a folder of treatments, each in a folder of its name. A mission's treatment is
             what ``treatment.json`` in its folder says; else that of ``treatments`` which run.json
             names, or which the mission's folder or the one above is called after; else the one
             that run.json names, if it is still where it was.
-        reader: reads a recording, `pytpc.ingest.read` or what shows its progress.
+        reader: reads a recording, `pytpc.ingest.reading.read` or what shows its progress.
 
     Raises:
         InputError: a recording or a treatment cannot be read, or a mission is given twice.

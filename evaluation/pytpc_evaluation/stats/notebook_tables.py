@@ -37,7 +37,6 @@ class StudyTable:
         return NotebookTable((self.table.first, *headings), tuple(rows), right, self.table.title)
 
     def __str__(self) -> str:
-        """The table as text."""
         return str(self.shown())
 
     def _repr_html_(self) -> str:

@@ -64,7 +64,6 @@ class Runner:
         on_progress: Callable[[Flight, Progress], None] | None = None,
         jobs: int = 1,
     ) -> None:
-        """See the class."""
         self._flies = flies
         self._on_progress = on_progress
         self._jobs = jobs

@@ -51,7 +51,6 @@ class LineCount:
     blank: int = 0
 
     def __add__(self, other: LineCount) -> LineCount:
-        """Both together."""
         return LineCount(
             self.files + other.files,
             self.code + other.code,

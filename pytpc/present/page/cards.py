@@ -95,7 +95,6 @@ class PageFigures:
     """The data of one mission's figures for the page's script: cards, and series by TPC."""
 
     def __init__(self, mission: ReportedMission) -> None:
-        """None yet."""
         self._mission = mission
         self._numbers: dict[str, int] = {}
         self.series: list[dict[str, object]] = []

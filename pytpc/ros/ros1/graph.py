@@ -109,7 +109,6 @@ class RosGraph:
         }
 
     def __enter__(self) -> Self:
-        """Start master and rosout."""
         for name in ("home", "log", "out"):
             (self.folder / name).mkdir(parents=True, exist_ok=True)
         with contextlib.ExitStack() as exits:
@@ -123,7 +122,6 @@ class RosGraph:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """End all that was started."""
         self._exits.close()
 
     def start(

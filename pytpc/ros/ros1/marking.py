@@ -52,7 +52,6 @@ class GraphMarks:
     """
 
     def __init__(self, master: str, observer: str, what: str = "marking") -> None:
-        """See the class; connects in the background."""
         self._what = what
         self._observer = observer
         self._master = Master(master, f"/tpc_mark_{os.getpid()}_{secrets.token_hex(3)}")
