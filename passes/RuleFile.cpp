@@ -10,8 +10,8 @@ namespace tpc {
 
 namespace {
 
-/// A section of a file: its rows' kind, and what a row can have besides
-/// `function`, `method`, `arity`, `types` and `profiles`.
+/// A section of a file: the kind of its rows, and the keys that a row may have
+/// besides `function`, `method`, `arity`, `types` and `profiles`.
 struct Section {
   StringLiteral Name;
   Rule::KindTy Kind;
@@ -69,7 +69,7 @@ static const Section Sections[] = {
     {"held", Rule::Held, HeldKeys, TextKeys},
 };
 
-/// In the order of the alphabet: a file's first mistake is always the same.
+/// Sorted, so that the first error reported for a file is always the same.
 static std::vector<StringRef> keysOf(const json::Object &O) {
   std::vector<StringRef> Keys;
   for (const auto &[Key, Unused] : O)
@@ -78,7 +78,7 @@ static std::vector<StringRef> keysOf(const json::Object &O) {
   return Keys;
 }
 
-/// An argument number of a row; no function has more.
+/// The largest argument number; no function has more arguments.
 static constexpr int64_t MaxNumber = 255;
 
 Error Reader::number(const json::Value &V, StringRef Place,
@@ -118,7 +118,7 @@ Error Reader::truth(const json::Value &V, StringRef Place, bool &Out) {
   return Error::success();
 }
 
-/// A part of a name: an argument's number, "this", or {"text": ...}.
+/// A part of a name: the number of an argument, "this", or {"text": ...}.
 Error Reader::part(const json::Value &V, StringRef Place, Rule &R) {
   Rule::Part P{Rule::Part::Argument, 0, ""};
   if (V.getAsString() == "this") {
@@ -213,7 +213,7 @@ Error Reader::row(const json::Value &V, const Section &In, StringRef Place,
   for (StringRef Key : In.Required)
     if (!Row->get(Key))
       return wrong(Place, "has no \"" + Key + "\"");
-  // A row without profiles belongs to all.
+  // A row without profiles belongs to every profile.
   if (Profiles.empty() || is_contained(Profiles, Profile))
     Out.Rows.push_back(std::move(R));
   return Error::success();

@@ -21,7 +21,7 @@ namespace tpc {
 
 using namespace layout;
 
-static constexpr uint32_t MostAhead = 64; ///< extents
+static constexpr uint32_t MostAhead = 64; ///< in extents
 
 Room::Room(const Config &C, const NewFile &File)
     : Path(File.Path), Descriptor(File.Descriptor),
@@ -33,16 +33,16 @@ Room::Room(const Config &C, const NewFile &File)
   }
 }
 
-/// A program that closes all descriptors, as daemons do, may have opened a file
-/// of its own in the place of this one.
+/// False if the program has closed the descriptor, as daemons do with all of
+/// them, and perhaps opened a file of its own under the same number.
 bool Room::isMine() const {
   struct stat Its;
   return !fstat(Descriptor, &Its) && Its.st_dev == Device &&
          Its.st_ino == Inode;
 }
 
-/// Allocates on the disk, so that writing to the mapping cannot fail; 0 or the
-/// error.
+/// Allocates space on the disk, so that writing to the mapping cannot fail;
+/// returns 0 or the error.
 static int allocate(int Descriptor, off_t Begin, off_t Length) {
   int Error;
   do
@@ -51,7 +51,7 @@ static int allocate(int Descriptor, off_t Begin, off_t Length) {
   return Error;
 }
 
-/// Whether the file may become \p End bytes long.
+/// Whether the file may grow to \p End bytes.
 bool Room::isAllowed(uint64_t End, std::string &Why) const {
   // Beyond this limit the process would get a signal.
   rlimit Limit;
@@ -185,7 +185,7 @@ void Room::touch() {
         return;
       Base = Extents[I].Base;
     }
-    // Reports may be written to it meanwhile: nothing is changed here.
+    // Reports may be written to it meanwhile, so nothing is changed here.
     if (madvise(Base, ExtentBytes, MADV_POPULATE_WRITE))
       for (uint32_t At = 0; At < ExtentBytes; At += 4096)
         __atomic_fetch_or(Base + At, 0, __ATOMIC_RELAXED);
@@ -214,7 +214,7 @@ void Room::lookAhead() {
     }
     std::lock_guard<std::mutex> Guard(Growing);
     std::string Why;
-    // A full disk is said when the room is needed.
+    // A full disk is reported when the space is needed.
     if (!grow(Why))
       break;
     touch();
@@ -241,11 +241,12 @@ void Room::close() {
   if (IsClosed)
     return;
   IsClosed = true;
-  // Nobody writes behind the chunks that were given out.
+  // Nobody writes behind the last chunk that was given out.
   if (isMine() && ftruncate(Descriptor, HeaderBytes + static_cast<off_t>(Used) *
                                                           ChunkBytes))
     warn(Path + ": " + errorText(errno));
-  // Who still wants to grow it sees that it is closed, or not its own.
+  // A thread that still wants to extend the file sees that it is closed, or no
+  // longer its own.
   if (isMine())
     ::close(Descriptor);
   if (!isStopped())

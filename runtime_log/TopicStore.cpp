@@ -8,17 +8,18 @@ namespace tpc {
 
 static constexpr size_t MostBlocks = 16;
 static constexpr uint32_t BlockEntries = 4096;
-/// A block ends here even with few entries, so that long keys have a bound.
+/// A block ends here even with few entries, so that long keys cannot make it
+/// large.
 static constexpr size_t BlockBytes = 512 * 1024;
 
-/// Before each entry in a block. Behind it stand the key with its NUL and, for
-/// a summary, the rest of its text.
+/// Stands before each entry in a block. The key with its NUL follows and, for a
+/// summary, the rest of its text.
 namespace {
 struct Head {
   int64_t Ns;
   double Compared, Threshold;
-  uint64_t Evaluations; ///< of a summary
-  uint32_t Length;      ///< of all that follows
+  uint64_t Evaluations; ///< for a summary
+  uint32_t Length;      ///< of everything that follows
   bool Guessed, IsReport, Result, Outcome;
 };
 } // namespace
@@ -96,8 +97,8 @@ void TopicStore::account(std::string Key, DropReason Why, uint64_t Count,
   DroppedInAll += Count;
 }
 
-/// Makes room: the oldest block goes. Of flops those are counted that can be
-/// seen among the reports that went.
+/// Drops the oldest block to make space. Of the flops in it, those are counted
+/// that the dropped reports show.
 void TopicStore::evict() {
   const Block Oldest = std::move(Blocks.front());
   Blocks.pop_front();

@@ -1,8 +1,8 @@
 //===- Main.cpp - tpc-clang, tpc-clang++ and LLVM's archiver --------------===//
 //
-// A compiler for builds that are not CMake: works out what clang is asked for,
-// adds TPC's flags where they belong and becomes clang. By its other names it
-// is the archiver that knows bitcode.
+// A compiler for builds without CMake: finds out what clang is asked to do,
+// adds the flags of TPC and becomes clang. Under its other names it is the
+// archiver that reads bitcode.
 //
 //===----------------------------------------------------------------------===//
 #include "Plan.h"
@@ -20,7 +20,8 @@ static void say(const char *What, const std::string &Text) {
   std::fprintf(stderr, "tpc: %s: %s\n", What, Text.c_str());
 }
 
-/// Becomes \p Program; returns, with what a shell would, where it cannot.
+/// Becomes \p Program; if that fails, returns the exit status that a shell
+/// would.
 static int become(const std::string &Program, std::vector<std::string> Words) {
   std::vector<char *> Pointers;
   Words.insert(Words.begin(), Program);
@@ -32,7 +33,7 @@ static int become(const std::string &Program, std::vector<std::string> Words) {
   return errno == ENOENT ? 127 : 126;
 }
 
-/// The archiver and its kind: no flag of theirs is ours.
+/// Runs the archiver or a related tool; their flags stay unchanged.
 static int runTool(const std::string &Tool, const fs::path &Self,
                    const std::vector<std::string> &Words) {
   const std::string Name = "llvm-" + Tool + "-" + clangVersion();

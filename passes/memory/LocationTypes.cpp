@@ -27,7 +27,8 @@ Type *elementOf(Type *T) {
 }
 
 void LocationTypes::findClassesOfGlobals(const Module &M) {
-  // All types of a module are not at hand; few modules need them.
+  // The types of a module are collected only when needed; few modules need
+  // them.
   std::optional<std::vector<StructType *>> All;
   for (const GlobalVariable &Global : M.globals()) {
     const auto *T = dyn_cast<StructType>(Global.getValueType());
@@ -64,7 +65,7 @@ Type *LocationTypes::typeAt(const Location &L) const {
   return L.item().Number == Nth::Whole ? T : elementOf(T);
 }
 
-/// The source's type of what is at \p L; null where it is not known.
+/// The source's type of the object at \p L; null if it is not known.
 const DIType *LocationTypes::debugTypeAt(const Location &L) const {
   if (L.Path.empty())
     return L.Root ? Debug.pointee(L.Root) : nullptr;
@@ -114,8 +115,8 @@ void LocationTypes::extend(Location &L, ArrayRef<Step> Steps) const {
   L.Path.append(Steps.begin(), Steps.end());
 }
 
-/// Where \p L is in an array, moves it on by \p Index objects of type \p Unit,
-/// each an element or some.
+/// If \p L is in an array, moves it by \p Index objects of type \p Unit, each
+/// of which is one element or several.
 void LocationTypes::moveOn(Location &L, const Value *Index, Type *Unit) const {
   Type *Array = declaredTypeAt(L);
   if (!isa_and_nonnull<ArrayType>(Array) || !Unit->isSized())
@@ -200,7 +201,8 @@ bool LocationTypes::descend(Location &L, int64_t &Offset, Type *Until) {
 }
 
 /// Adds the scalars of an object of type \p T at \p L, which begins \p At bytes
-/// behind the beginning of an access, as far as the \p Size bytes of that go.
+/// after the beginning of an access of \p Size bytes, as far as the access
+/// covers them.
 void LocationTypes::addScalarsOf(const Location &L, Type *T, int64_t At,
                                  uint64_t Size,
                                  SmallVectorImpl<ScalarPart> &Out) {
@@ -248,7 +250,7 @@ bool LocationTypes::addScalars(Location L, uint64_t Size,
   size_t First = Out.size();
   uint64_t At = 0;
   while (true) {
-    // Of an array the elements that follow, as far as it goes.
+    // In an array, the following elements are covered too.
     if (Type *Whole = declaredTypeAt(L); Whole && Whole->isArrayTy()) {
       uint64_t Bytes =
           Layout.getTypeAllocSize(elementOf(Whole)).getFixedValue();
@@ -281,7 +283,7 @@ bool LocationTypes::addScalars(Location L, uint64_t Size,
     }
     break;
   }
-  // Where it begins is not known: any elements.
+  // Where the access begins is not known: any elements.
   if (!IsOne)
     for (ScalarPart &Part : drop_begin(Out, First))
       Part.Where.widenAll();

@@ -13,7 +13,7 @@ bool isText(StringRef Type) {
          Type.starts_with("std::__cxx11::basic_string<char,");
 }
 
-/// Each object is compared with all operands of text in the unit.
+/// Each object is compared with all text operands in the link unit.
 static cl::opt<unsigned>
     MaxObjects("tpc-max-text-copies", cl::Hidden, cl::init(16),
                cl::desc("Objects that one text is copied to"));
@@ -48,8 +48,8 @@ SmallVector<CallBase *, 2> TextUsage::numbersFrom(const CallBase &Into,
   return Found;
 }
 
-/// The operator of \p Compare, a comparison of what string::compare() gives
-/// with zero; empty where it is anything else.
+/// The operator of \p Compare, if it compares the result of string::compare()
+/// with zero; otherwise empty.
 static StringRef relationToZero(const CmpInst &Compare, const Value *Result) {
   const auto *Zero = dyn_cast<ConstantInt>(Compare.getOperand(1));
   if (Compare.getOperand(0) != Result || !Zero || !Zero->isZero())
@@ -72,7 +72,7 @@ static StringRef relationToZero(const CmpInst &Compare, const Value *Result) {
   }
 }
 
-/// `<` for `>`, where the threshold stands on the left.
+/// `<` for `>`, if the threshold is on the left.
 static StringRef turned(StringRef Relation) {
   if (Relation == "<")
     return ">";

@@ -96,8 +96,9 @@ std::string BlindSpot::text(const ParamCallFinder::Result &Reads,
   llvm_unreachable("no such kind");
 }
 
-/// Library code calls through pointers of its own all the time; what the user
-/// has it call goes through an `operator()`, and is where the user calls that.
+/// Library code often calls through its own pointers. A call of user code by a
+/// library goes through an `operator()`, and is listed where the user calls
+/// that.
 static void addIndirectCalls(const CallGraphResult &Calls, Wording &Words,
                              std::vector<BlindSpot> &Out) {
   auto Add = [&](const CallBase *Call) {

@@ -16,7 +16,7 @@ static double seconds() {
   return static_cast<double>(T.tv_sec) + static_cast<double>(T.tv_nsec) * 1e-9;
 }
 
-/// Memory that the process has in use, in MiB; 0 where /proc is not there.
+/// Memory that the process uses, in MiB; 0 without /proc.
 static double memory() {
   double Pages = 0;
   if (std::FILE *File = std::fopen("/proc/self/statm", "r")) {

@@ -25,19 +25,20 @@ namespace tpc {
 static constexpr int64_t Ms = 1'000'000;
 static constexpr int64_t SoonNs = 20 * Ms;
 static constexpr int64_t LateNs = 250 * Ms;
-/// So many turns it is looked often whether roscpp is started; then seldom.
+/// For this many turns, checks often whether roscpp has started; after that
+/// seldom.
 static constexpr int SoonTurns = 500;
 static constexpr std::chrono::seconds FirstRetry{1}, LastRetry{60};
 static const char *const Service = "~tpc/reload";
 
 namespace {
 
-/// The settings of this process as ROS has them. Its members are used by the
-/// thread that asks the master, except where they are atomic.
+/// The settings of this process in ROS. Its members are used by the thread that
+/// asks the master, unless they are atomic.
 class Control {
 public:
   static Control &instance() {
-    // Never destroyed: threads may look at it until the very end.
+    // Never destroyed: threads may use it until the very end.
     static Control &Only = *new Control;
     return Only;
   }
@@ -67,8 +68,8 @@ private:
 
 } // namespace
 
-/// What a value of the parameter server is as a word of the environment. YAML
-/// takes `off` for false.
+/// Converts a value of the parameter server to the text of a variable of the
+/// environment. YAML reads `off` as false.
 static bool textOf(const std::string &Name, XmlRpc::XmlRpcValue &Value,
                    std::string &Text) {
   switch (Value.getType()) {
@@ -95,7 +96,7 @@ static bool textOf(const std::string &Name, XmlRpc::XmlRpcValue &Value,
   }
 }
 
-/// The one setting \p Name is in \p New what it is in \p Now.
+/// Sets the setting \p Name in \p New back to its value in \p Now.
 static void keep(Config &New, const Config &Now, const std::string &Name) {
   if (Name == "sink")
     New.Sink = Now.Sink;
@@ -144,8 +145,8 @@ void Control::takeFrom(const char *Place, Config &New, const Config &Now,
 
 Control::Texts Control::takeParameters() {
   Texts Complaints;
-  // Asked first, because what follows does not tell a parameter that is not
-  // set from a master that does not answer.
+  // Asked first, because the calls below cannot distinguish a parameter that is
+  // not set from a master that does not answer.
   if (!ros::master::check()) {
     Complaints.push_back("the ROS master does not answer; the settings are "
                          "left as they were");
@@ -191,7 +192,7 @@ void Control::begin() {
       ros::names::resolve(Service),
       [this](auto &Request, auto &Answer) { return reload(Request, Answer); });
   Options.callback_queue = &Queue;
-  // False is said by roscpp itself, and will not change.
+  // roscpp itself logs a failure, and another try would fail too.
   ros::ServiceManager::instance()->advertiseService(Options);
   Served = true;
 }
@@ -208,7 +209,7 @@ int64_t Control::turn() {
   if (!Served) {
     if (Failed && Clock::now().time_since_epoch().count() < RetryAt)
       return LateNs;
-    // The thread wakes the helper when it is through.
+    // The thread wakes the helper when it is done.
     askMaster([this] {
       if (!Served)
         begin();
@@ -238,7 +239,7 @@ const char *rosNodeName() {
   return Name.c_str();
 }
 
-/// Whether ros::Time was initialised. Until then it says that it is simulated.
+/// Whether ros::Time is initialised. Until then it claims to be simulated.
 static bool timeIsKnown() {
   static std::atomic<bool> Known{false};
   if (Known)
@@ -257,7 +258,7 @@ static bool timeIsKnown() {
 bool rosTimeIsSimulated() { return timeIsKnown() && ros::Time::isSimTime(); }
 
 int64_t rosNow() {
-  // A forked child gets no /clock, and the lock of the time may be closed.
+  // A forked child gets no /clock, and the lock of the time may stay locked.
   static std::atomic<int64_t> Last{0};
   if (!timeIsKnown())
     return 0;
