@@ -1,7 +1,7 @@
 //===- LogFile.h - The binary file of reports -----------------------------===//
 //
 // Records are written directly into the mapped file. Layout.h defines its
-// layout, Room.h manages its space, NewFile.h its name.
+// layout, MappedFile.h manages its space, NewFile.h its name.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_LOGFILE_H
@@ -10,8 +10,8 @@
 #include "Clock.h"
 #include "Config.h"
 #include "Layout.h"
+#include "MappedFile.h"
 #include "Report.h"
-#include "Room.h"
 #include "Sites.h"
 #include "Threads.h"
 
@@ -108,7 +108,7 @@ private:
   /// none. SystemLock is held.
   layout::Record *systemRecords(uint32_t Count);
 
-  Room Space;
+  MappedFile Space;
 
   std::mutex SystemLock; ///< for the system chunk and for pairs
   layout::Record *SystemNext = nullptr, *SystemEnd = nullptr;

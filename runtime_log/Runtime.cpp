@@ -16,7 +16,7 @@
 namespace tpc {
 
 static constexpr int64_t Second = 1'000'000'000;
-static constexpr int64_t TurnNs = 20'000'000;
+static constexpr int64_t PollNs = 20'000'000;
 static constexpr int64_t Never = INT64_MAX;
 /// Until then the rate of the counter is not known well enough to use it.
 static constexpr int64_t FirstAdjustNs = 10'000'000;
@@ -83,7 +83,7 @@ private:
   bool needsFile(const Config &C);
   void startHelper();
   void help();
-  int64_t turn(int64_t Now);
+  int64_t runDue(int64_t Now);
   void eachSecond();
   void accountForDrops();
 
@@ -100,7 +100,7 @@ private:
   bool IsEnding = false;
 
   // Used by the helper only.
-  int64_t NextRos = 0, NextTurn = 0, NextPeriod = 0, NextSecond = 0;
+  int64_t NextRos = 0, NextPoll = 0, NextPeriod = 0, NextSecond = 0;
   int64_t RealOffset = 0;
   std::atomic<uint64_t> DroppedInAll{0};
 };
@@ -264,7 +264,7 @@ void Runtime::wake() {
 }
 
 void Runtime::help() {
-  NextRos = NextTurn = NextPeriod = NextSecond = 0;
+  NextRos = NextPoll = NextPeriod = NextSecond = 0;
   Clock::adjust();
   int64_t Next = Clock::steady() + FirstAdjustNs;
   for (;;) {
@@ -285,15 +285,15 @@ void Runtime::help() {
         NextRos = 0;
       IsAwake = false;
     }
-    Next = turn(Clock::steady());
+    Next = runDue(Clock::steady());
   }
 }
 
 /// Does what is due at \p Now; returns when the next thing is due.
-int64_t Runtime::turn(int64_t Now) {
+int64_t Runtime::runDue(int64_t Now) {
   // No lock is held, because roscpp calls back into apply().
   if (Now >= NextRos) {
-    int64_t After = forkedFromNode() ? -1 : rosTurn();
+    int64_t After = forkedFromNode() ? -1 : pollRos();
     NextRos = After < 0 ? Never : Now + After;
   }
   // roscpp knows it only some time after its start, and a program may change
@@ -317,10 +317,10 @@ int64_t Runtime::turn(int64_t Now) {
       NextPeriod = Now + Held.PeriodNs;
   }
   Sink &S = *NowSink.load();
-  bool WantsTurns = S.wantsTurns();
-  if (WantsTurns && Now >= NextTurn) {
-    S.turn();
-    NextTurn = Now + TurnNs;
+  bool IsPolled = S.isPolled();
+  if (IsPolled && Now >= NextPoll) {
+    S.poll();
+    NextPoll = Now + PollNs;
   }
   bool HasSeconds = File || IsEdges || SiteCap || ProcessCap;
   if (HasSeconds && Now >= NextSecond) {
@@ -330,8 +330,8 @@ int64_t Runtime::turn(int64_t Now) {
   int64_t Next = NextRos;
   if (IsEdges)
     Next = std::min(Next, NextPeriod);
-  if (WantsTurns)
-    Next = std::min(Next, NextTurn);
+  if (IsPolled)
+    Next = std::min(Next, NextPoll);
   if (HasSeconds)
     Next = std::min(Next, NextSecond);
   return Next;

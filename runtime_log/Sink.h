@@ -22,10 +22,10 @@ public:
   virtual void take(const Dropped &D) = 0;
 
   /// From the helper thread, about every 20 ms while this is the chosen sink.
-  virtual void turn() {}
+  virtual void poll() {}
 
-  /// Whether turn() has anything to do; if not, the helper thread sleeps.
-  virtual bool wantsTurns() const { return false; }
+  /// Whether poll() has anything to do. If not, the helper thread may sleep.
+  virtual bool isPolled() const { return false; }
 
   /// The sink was left, or the process ends: sends what is waiting.
   virtual void end() {}

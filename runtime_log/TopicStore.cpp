@@ -36,7 +36,7 @@ template <typename F> static void forEach(const TopicStore::Block &B, F Visit) {
   }
 }
 
-char *TopicStore::room(size_t Length) {
+char *TopicStore::allocate(size_t Length) {
   if (Blocks.empty() || Blocks.back().Entries >= BlockEntries ||
       Blocks.back().Data.size() >= BlockBytes) {
     if (Blocks.size() == MostBlocks)
@@ -62,7 +62,7 @@ void TopicStore::add(Time When, const Report &R) {
                true,
                R.Result,
                R.Outcome};
-  char *To = room(sizeof(H) + KeyBytes);
+  char *To = allocate(sizeof(H) + KeyBytes);
   std::memcpy(To, &H, sizeof(H));
   std::memcpy(To + sizeof(H), R.Key, KeyBytes);
 }
@@ -79,7 +79,7 @@ void TopicStore::add(Time When, const Summary &S) {
                false,
                S.Result,
                S.Outcome};
-  char *To = room(sizeof(H) + H.Length);
+  char *To = allocate(sizeof(H) + H.Length);
   std::memcpy(To, &H, sizeof(H));
   std::memcpy(To + sizeof(H), S.Key, KeyBytes);
   std::memcpy(To + sizeof(H) + KeyBytes, Text.data(), Text.size());
@@ -91,9 +91,9 @@ void TopicStore::add(const Dropped &D) {
 
 void TopicStore::account(std::string Key, DropReason Why, uint64_t Count,
                          uint64_t Flops) {
-  auto &[Counted, Turned] = Accounts[{std::move(Key), Why}];
+  auto &[Counted, CountedFlops] = Accounts[{std::move(Key), Why}];
   Counted += Count;
-  Turned += Flops;
+  CountedFlops += Flops;
   DroppedInAll += Count;
 }
 

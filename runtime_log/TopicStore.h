@@ -63,7 +63,7 @@ public:
   uint64_t giveUp();
 
 private:
-  char *room(size_t Length);
+  char *allocate(size_t Length);
   void account(std::string Key, DropReason Why, uint64_t Count, uint64_t Flops);
   void evict();
 

@@ -25,7 +25,7 @@ namespace {
 
 constexpr unsigned None = ~0U;
 
-FlowGraph turnedRound(const FlowGraph &Graph) {
+FlowGraph reversed(const FlowGraph &Graph) {
   FlowGraph Preds(Graph.size());
   for (unsigned N = 0; N < Graph.size(); ++N)
     for (unsigned S : Graph[N])
@@ -53,7 +53,7 @@ std::vector<bool> endlessLoop(const FlowGraph &Graph, const FlowGraph &Preds,
 /// it. The added nodes follow those of \p Graph.
 FlowGraph withEnds(FlowGraph Graph) {
   for (;;) {
-    FlowGraph Preds = turnedRound(Graph);
+    FlowGraph Preds = reversed(Graph);
     std::vector<unsigned> Ends;
     for (unsigned N = 0; N < Graph.size(); ++N)
       if (Graph[N].empty())

@@ -73,7 +73,7 @@ static StringRef relationToZero(const CmpInst &Compare, const Value *Result) {
 }
 
 /// `<` for `>`, if the threshold is on the left.
-static StringRef turned(StringRef Relation) {
+static StringRef swapped(StringRef Relation) {
   if (Relation == "<")
     return ">";
   if (Relation == "<=")
@@ -109,7 +109,7 @@ TextUsage::Found TextUsage::comparisonsOf(const Value *Object) const {
       bool Left = N == 0 && U.Call->arg_size() > 1;
       if (Relation != "compare") {
         Out.Comparisons.push_back(
-            {U.Call, Left ? turned(Relation) : Relation, ByArgument});
+            {U.Call, Left ? swapped(Relation) : Relation, ByArgument});
         continue;
       }
       for (User *V : U.Call->users()) {
@@ -119,7 +119,7 @@ TextUsage::Found TextUsage::comparisonsOf(const Value *Object) const {
           ++Out.Lost;
         else
           Out.Comparisons.push_back(
-              {Compare, Left ? turned(Own) : Own, ByArgument});
+              {Compare, Left ? swapped(Own) : Own, ByArgument});
       }
     }
   }

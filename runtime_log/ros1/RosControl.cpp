@@ -25,9 +25,9 @@ namespace tpc {
 static constexpr int64_t Ms = 1'000'000;
 static constexpr int64_t SoonNs = 20 * Ms;
 static constexpr int64_t LateNs = 250 * Ms;
-/// For this many turns, checks often whether roscpp has started; after that
+/// For this many polls, checks often whether roscpp has started; after that
 /// seldom.
-static constexpr int SoonTurns = 500;
+static constexpr int SoonPolls = 500;
 static constexpr std::chrono::seconds FirstRetry{1}, LastRetry{60};
 static const char *const Service = "~tpc/reload";
 
@@ -43,7 +43,7 @@ public:
     return Only;
   }
 
-  int64_t turn();
+  int64_t poll();
 
 private:
   using Clock = std::chrono::steady_clock;
@@ -63,7 +63,7 @@ private:
   std::atomic<bool> Failed{false};
   std::atomic<Clock::rep> RetryAt{0};
   std::chrono::seconds Retry = FirstRetry;
-  int Turns = 0; // of the helper thread
+  int Polls = 0; // by the helper thread
 };
 
 } // namespace
@@ -197,14 +197,14 @@ void Control::begin() {
   Served = true;
 }
 
-int64_t Control::turn() {
+int64_t Control::poll() {
   RosUse Use;
   if (!Use)
     return -1;
   if (!rosIsUp()) {
     // A node that was shut down may start again, and then has no services.
     Served = false;
-    return Turns < SoonTurns ? (++Turns, SoonNs) : LateNs;
+    return Polls < SoonPolls ? (++Polls, SoonNs) : LateNs;
   }
   if (!Served) {
     if (Failed && Clock::now().time_since_epoch().count() < RetryAt)
@@ -222,9 +222,9 @@ int64_t Control::turn() {
   return SoonNs;
 }
 
-int64_t rosTurn() {
+int64_t pollRos() {
   try {
-    return Control::instance().turn();
+    return Control::instance().poll();
   } catch (...) {
     return LateNs;
   }

@@ -11,7 +11,7 @@ namespace tpc {
 ///
 /// \returns after how many nanoseconds to call it again; -1: only after
 /// wakeHelper() was called. Never throws.
-int64_t rosTurn();
+int64_t pollRos();
 
 /// The process ends: withdraws the service.
 void rosEnd();

@@ -118,7 +118,7 @@ bool askMaster(std::function<void()> Job) {
       wakeHelper();
     }).detach();
   } catch (const std::exception &) {
-    // No thread is available; the next turn tries again.
+    // No thread is available; the next poll tries again.
     Taken = Asking = false;
   }
   pthread_sigmask(SIG_SETMASK, &Before, nullptr);

@@ -40,8 +40,8 @@ constexpr size_t MessageBytes = 64 * 1024;
 /// at most 32 MiB.
 constexpr uint32_t QueueMessages = 512;
 /// The time between two messages: five a second for each node, with some
-/// allowance for the turns of the helper. If every turn sent a message, a node
-/// that reports 50 times a second would send one for each report.
+/// allowance for the time between two polls. If every poll sent a message, a
+/// node that reports 50 times a second would send one for each report.
 constexpr int64_t BatchNs = 190'000'000;
 /// How long roscpp's thread gets to write the last messages.
 constexpr std::chrono::milliseconds LastMoment{50};
@@ -74,8 +74,8 @@ public:
   void take(const Report &R) override;
   void take(const Summary &S) override;
   void take(const Dropped &D) override;
-  void turn() override;
-  bool wantsTurns() const override;
+  void poll() override;
+  bool isPolled() const override;
   void end() override;
   std::string status() const override;
 
@@ -164,7 +164,7 @@ void TopicSink::take(const Dropped &D) {
     keep([&] { Store.add(D); });
 }
 
-bool TopicSink::wantsTurns() const {
+bool TopicSink::isPolled() const {
   return !Advertised || (Subscribed && Something);
 }
 
@@ -259,7 +259,7 @@ void TopicSink::send(ros::Publication &To, const TopicStore::Batch &Batch) {
   ros::PollManager::instance()->getPollSet().signal();
 }
 
-void TopicSink::turn() {
+void TopicSink::poll() {
   RosUse Use;
   if (!Use)
     return;

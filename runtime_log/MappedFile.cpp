@@ -1,5 +1,5 @@
-//===- Room.cpp -----------------------------------------------------------===//
-#include "Room.h"
+//===- MappedFile.cpp -----------------------------------------------------===//
+#include "MappedFile.h"
 
 #include "Clock.h"
 #include "Runtime.h"
@@ -23,7 +23,7 @@ using namespace layout;
 
 static constexpr uint32_t MostAhead = 64; ///< in extents
 
-Room::Room(const Config &C, const NewFile &File)
+MappedFile::MappedFile(const Config &C, const NewFile &File)
     : Path(File.Path), Descriptor(File.Descriptor),
       LimitBytes(C.FileLimitMiB << 20), ReserveBytes(C.FileReserveMiB << 20) {
   struct stat Its;
@@ -35,7 +35,7 @@ Room::Room(const Config &C, const NewFile &File)
 
 /// False if the program has closed the descriptor, as daemons do with all of
 /// them, and perhaps opened a file of its own under the same number.
-bool Room::isMine() const {
+bool MappedFile::isMine() const {
   struct stat Its;
   return !fstat(Descriptor, &Its) && Its.st_dev == Device &&
          Its.st_ino == Inode;
@@ -52,7 +52,7 @@ static int allocate(int Descriptor, off_t Begin, off_t Length) {
 }
 
 /// Whether the file may grow to \p End bytes.
-bool Room::isAllowed(uint64_t End, std::string &Why) const {
+bool MappedFile::isAllowed(uint64_t End, std::string &Why) const {
   // Beyond this limit the process would get a signal.
   rlimit Limit;
   if (!getrlimit(RLIMIT_FSIZE, &Limit) && End > Limit.rlim_cur) {
@@ -75,7 +75,7 @@ bool Room::isAllowed(uint64_t End, std::string &Why) const {
   return true;
 }
 
-char *Room::map(uint64_t At, size_t Size, std::string &Why) const {
+char *MappedFile::map(uint64_t At, size_t Size, std::string &Why) const {
   void *P = mmap(nullptr, Size, PROT_READ | PROT_WRITE, MAP_SHARED, Descriptor,
                  static_cast<off_t>(At));
   if (P != MAP_FAILED)
@@ -84,7 +84,7 @@ char *Room::map(uint64_t At, size_t Size, std::string &Why) const {
   return nullptr;
 }
 
-bool Room::grow(std::string &Why) {
+bool MappedFile::grow(std::string &Why) {
   uint64_t Count;
   {
     std::lock_guard<std::mutex> Guard(Chunks);
@@ -126,8 +126,8 @@ bool Room::grow(std::string &Why) {
   return true;
 }
 
-char *Room::newChunk(uint32_t Kind, uint32_t Thread, uint64_t First,
-                     uint64_t Tid) {
+char *MappedFile::newChunk(uint32_t Kind, uint32_t Thread, uint64_t First,
+                           uint64_t Tid) {
   for (;;) {
     {
       std::lock_guard<std::mutex> Guard(Chunks);
@@ -166,7 +166,7 @@ char *Room::newChunk(uint32_t Kind, uint32_t Thread, uint64_t First,
   }
 }
 
-void Room::stop(const std::string &Why) {
+void MappedFile::stop(const std::string &Why) {
   if (Stopped.exchange(true))
     return;
   Header->State = layout::Stopped;
@@ -174,7 +174,7 @@ void Room::stop(const std::string &Why) {
        "; nothing more is recorded, the program goes on as if it were");
 }
 
-void Room::touch() {
+void MappedFile::touch() {
   for (size_t I = 0;; ++I) {
     char *Base;
     {
@@ -194,7 +194,7 @@ void Room::touch() {
   }
 }
 
-void Room::lookAhead() {
+void MappedFile::lookAhead() {
   std::vector<char *> Full;
   for (;;) {
     {
@@ -223,7 +223,7 @@ void Room::lookAhead() {
     munmap(Base, ExtentBytes);
 }
 
-void Room::finish(const void *EndOfChunk) {
+void MappedFile::finish(const void *EndOfChunk) {
   const char *Chunk = static_cast<const char *>(EndOfChunk) - ChunkBytes;
   std::lock_guard<std::mutex> Guard(Chunks);
   for (size_t I = Extents.size(); I-- > 0;) {
@@ -235,7 +235,7 @@ void Room::finish(const void *EndOfChunk) {
   }
 }
 
-void Room::close() {
+void MappedFile::close() {
   std::lock_guard<std::mutex> Guard(Growing);
   std::lock_guard<std::mutex> Inner(Chunks);
   if (IsClosed)

@@ -1,4 +1,4 @@
-//===- Room.h - The mapped file, chunk by chunk ---------------------------===//
+//===- MappedFile.h - The mapped file, chunk by chunk ---------------------===//
 //
 // Space is allocated on the disk before it is mapped, so that a full disk is an
 // error and not a signal. The helper thread touches the pages in advance, so
@@ -6,8 +6,8 @@
 // to. The kernel keeps what is written to it, whatever happens to the process.
 //
 //===----------------------------------------------------------------------===//
-#ifndef TPC_ROOM_H
-#define TPC_ROOM_H
+#ifndef TPC_MAPPEDFILE_H
+#define TPC_MAPPEDFILE_H
 
 #include "Config.h"
 #include "Layout.h"
@@ -21,9 +21,10 @@
 
 namespace tpc {
 
-class Room {
+/// The space of one file: grows by extents, which are given out in chunks.
+class MappedFile {
 public:
-  Room(const Config &C, const NewFile &File);
+  MappedFile(const Config &C, const NewFile &File);
 
   /// Maps one more extent, the first one together with the header; if that
   /// fails, returns false and sets \p Why.
@@ -81,4 +82,4 @@ private:
 
 } // namespace tpc
 
-#endif // TPC_ROOM_H
+#endif // TPC_MAPPEDFILE_H
