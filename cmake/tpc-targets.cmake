@@ -32,7 +32,7 @@ function(_tpc_finish)
   get_property(lost GLOBAL PROPERTY _tpc_lost)
   if(lost)
     string(REPLACE ";" ", " lost "${lost}")
-    message(WARNING "TPC: lost in what is built with TPC: ${lost}; keep it with -DTPC_DISABLE=ON")
+    message(WARNING "TPC: has no effect in a build with TPC: ${lost}; -DTPC_DISABLE=ON keeps it")
   endif()
   get_property(plain GLOBAL PROPERTY _tpc_plain)
   if(plain)
@@ -213,7 +213,7 @@ function(_tpc_find_reason_to_leave_out folder target reason)
   endif()
   # A report from the code that carries reports would bring on the next one, without end.
   if(package MATCHES "^(cpp_common|rosconsole|roscpp|roscpp_serialization|rosout|rostime|xmlrpcpp)$")
-    set(${reason} "its code carries the reports (its property TPC_INSTRUMENT has it analysed, too)"
+    set(${reason} "its code carries the reports (set its property TPC_INSTRUMENT to analyse it too)"
       PARENT_SCOPE)
   endif()
   # Libraries that only a test program is linked with.
@@ -228,7 +228,7 @@ function(_tpc_find_reason_to_leave_out folder target reason)
   endif()
   get_directory_property(with_tests DIRECTORY "${folder}" DEFINITION TPC_TESTS)
   if(NOT with_tests AND (libraries OR target IN_LIST tests))
-    set(${reason} "it is a test (TPC_TESTS=ON has tests analysed, too)" PARENT_SCOPE)
+    set(${reason} "it is a test (set TPC_TESTS=ON to analyse tests too)" PARENT_SCOPE)
   endif()
 endfunction()
 

@@ -95,7 +95,7 @@ static void planReports(AnalysedModule &Analysed, ModuleAnalysisManager &AM,
     return;
   Out.IsChanged = Analysed.isSeparated();
   if (!Analysed.bringBack()) {
-    Out.Failure = "the analysed copy is another program";
+    Out.Failure = "the analysed copy no longer matches the program";
     return;
   }
   const ParamCallFinder::Result &Reads = AM.getResult<ParamCallFinder>(Seen);
@@ -124,7 +124,7 @@ static std::vector<std::string> findNamedHelpers(Module &M, const Options &Opts,
 /// deeply than this.
 static cl::opt<unsigned> MaxSeparated(
     "tpc-max-separated", cl::Hidden, cl::init(3),
-    cl::desc("Nested functions whose calls are told apart by copies"));
+    cl::desc("Nesting of functions that are copied for each of their calls"));
 
 /// Runs the analysis so that a crash, an endless loop or exhausted memory only
 /// makes the analysis fail, not the link. \p M changes only if reports are
@@ -183,7 +183,7 @@ PreservedAnalyses LinkUnitPass::run(Module &M, ModuleAnalysisManager &AM) {
   if (!F.Failure.empty()) {
     warn(Opts,
          F.Failure + (F.IsChanged ? "; this link unit gets no reports"
-                                  : "; this link unit is left as it was"));
+                                  : "; this link unit is not changed"));
     F.Unit =
         describeFailure(Opts, F.Failure, F.Unit.Fields.getObject("counts"));
   } else if (json::Object *Counts = F.Unit.Fields.getObject("counts")) {
@@ -191,7 +191,7 @@ PreservedAnalyses LinkUnitPass::run(Module &M, ModuleAnalysisManager &AM) {
   }
   if (!Opts.StaticInfo.empty())
     if (Error E = writeJson(std::move(F.Unit), Opts.StaticInfo))
-      warn(Opts, "static information not written: " + toString(std::move(E)));
+      warn(Opts, "cannot write the static information: " + toString(std::move(E)));
   return PreservedAnalyses::none();
 }
 

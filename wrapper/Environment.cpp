@@ -138,7 +138,7 @@ static std::string limit(const char *Name, Environment &E) {
   if (Value.find_first_not_of("0123456789") == Value.npos && Value.size() < 10)
     return Value;
   E.Complaints.push_back(std::string(Name) +
-                         " is not a number, so it is not heeded: " + Value);
+                         " is not a number and is ignored: " + Value);
   return "";
 }
 
@@ -168,14 +168,14 @@ Environment Environment::read(const fs::path &Self) {
   E.Lld = findProgram("ld.lld-" + clangVersion(), Self);
   if (E.Lld.empty())
     E.Missing = "ld.lld-" + clangVersion() +
-                " is not here (apt-get install lld-" + clangVersion() + ")";
+                " is not installed (apt-get install lld-" + clangVersion() + ")";
   for (const char *Part :
        {"lib/tpc/TpcDefer.so", "lib/tpc/TpcPasses.so", "lib/libtpc_log.so"})
     if (!isThere(E.Prefix / Part))
-      E.Missing = (E.Prefix / Part).string() + " is not there";
+      E.Missing = (E.Prefix / Part).string() + " is missing";
   const fs::path File = E.Prefix / "share/tpc/flags";
   if (!readFlags(File, E))
-    E.Missing = File.string() + " is not there";
+    E.Missing = File.string() + " is missing";
   return E;
 }
 

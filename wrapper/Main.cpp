@@ -40,7 +40,7 @@ static int runTool(const std::string &Tool, const fs::path &Self,
   const std::string Program = findProgram(Name, Self);
   if (!Program.empty())
     return become(Program, Words);
-  say("error", Name + " is not here (apt-get install llvm-" + clangVersion() +
+  say("error", Name + " is not installed (apt-get install llvm-" + clangVersion() +
                    "); the system's " + Tool + " cannot read bitcode");
   return 127;
 }
@@ -53,12 +53,12 @@ static int runCompiler(bool IsCxx, const fs::path &Self,
   if (Program.empty()) {
     const std::string Other = findProgram(IsCxx ? "c++" : "cc", Self);
     const std::string Mend =
-        Name + " is not here (apt-get install clang-" + clangVersion() + ")";
+        Name + " is not installed (apt-get install clang-" + clangVersion() + ")";
     if (Other.empty()) {
       say("error", Mend);
       return 127;
     }
-    say("warning", Mend + "; " + Other + " is used, without TPC");
+    say("warning", Mend + "; using " + Other + " without TPC");
     return become(Other, std::move(Words));
   }
   const Arguments Asked = parseArguments(Words);
@@ -83,7 +83,7 @@ int main(int Count, char **Values) {
   std::error_code Failed;
   const fs::path Self = fs::read_symlink("/proc/self/exe", Failed);
   if (Failed || Count < 1) {
-    say("error", "/proc/self/exe cannot be read: " + Failed.message());
+    say("error", "cannot read /proc/self/exe: " + Failed.message());
     return 127;
   }
   const std::string Name = fs::path(Values[0]).filename();

@@ -110,7 +110,7 @@ static void addPassOptions(std::vector<std::string> &To,
 static std::string whyNoReports(const Arguments &Asked) {
   if (Asked.IsStatic)
     return "a static program cannot use the log library";
-  return Asked.IsRelocatable ? "what -r links is linked again" : "";
+  return Asked.IsRelocatable ? "the output of -r is linked again" : "";
 }
 
 Plan planFor(const Arguments &Asked, const Environment &Around) {
@@ -122,7 +122,7 @@ Plan planFor(const Arguments &Asked, const Environment &Around) {
   const bool Links = Asked.Goal == Step::Link;
   std::string Why = Around.Missing;
   if (Why.empty() && !Asked.Obstacle.empty())
-    Why = Asked.Obstacle + " does not go together with it";
+    Why = Asked.Obstacle + " cannot be combined with TPC";
   const bool IsPlain = Probe || Around.IsDisabled || !Why.empty() ||
                        Asked.hasSource(Language::Other);
   if (!IsPlain && Links)

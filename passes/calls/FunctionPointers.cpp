@@ -20,7 +20,7 @@ namespace tpc {
 static cl::opt<unsigned> MaxVisited(
     "tpc-max-pointer-steps", cl::Hidden, cl::init(20000),
     cl::desc(
-        "Places that the search for the targets of one indirect call meets"));
+        "Places visited in search of the targets of one indirect call"));
 /// If more targets are found, they are usually all functions of one type, which
 /// says nothing; the call counts as unresolved.
 static cl::opt<unsigned>

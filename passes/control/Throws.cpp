@@ -18,7 +18,7 @@ AnalysisKey Throws::Key;
 /// as throwing any type.
 static cl::opt<unsigned>
     MaxTypes("tpc-max-thrown-types", cl::Hidden, cl::init(4),
-             cl::desc("Types of exceptions that are told apart at one call"));
+             cl::desc("Types of exceptions that are distinguished at one call"));
 
 /// Exception classes have few bases; a damaged table might contain a cycle.
 static cl::opt<unsigned> MaxBases(

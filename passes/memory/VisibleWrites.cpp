@@ -34,7 +34,7 @@ VisibleWrites::Writes VisibleWrites::allWrites(const Location &L) {
 /// usually a buffer or a counter; all its writes count as visible.
 static cl::opt<unsigned> MaxNarrowed(
     "tpc-max-narrowed-writes", cl::Hidden, cl::init(64),
-    cl::desc("Writes of one variable that are told apart by who sees them"));
+    cl::desc("Writes of one variable whose readers are computed"));
 
 static bool isLocalOf(const Location &L, const Instruction &At) {
   const auto *Local = dyn_cast_or_null<AllocaInst>(L.Root);

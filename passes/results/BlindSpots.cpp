@@ -20,7 +20,7 @@ StringRef BlindSpot::kindName() const {
 static std::string whyLost(const Instruction &I) {
   const auto *Call = dyn_cast<CallBase>(&I);
   if (Call && !isMultiplyAdd(I))
-    return "handed to " + Wording::callee(*Call) + ", which is not looked into";
+    return "handed to " + Wording::callee(*Call) + ", which is not analysed";
   if (Call || isa<BinaryOperator>(I))
     return "mixed with another variable";
   if (isa<GetElementPtrInst>(I))
@@ -74,7 +74,7 @@ std::string BlindSpot::text(const ParamCallFinder::Result &Reads,
   case LostOutcome:
     return whyLost(*At);
   case UnknownPointer:
-    return "stored through a pointer to nowhere known";
+    return "stored through a pointer to an unknown place";
   case ManyTargets:
     return "stored to one of very many variables";
   case Unread: {
@@ -85,7 +85,7 @@ std::string BlindSpot::text(const ParamCallFinder::Result &Reads,
            ", and nothing here reads it";
   }
   case DynamicName:
-    return "reads a parameter whose name is put together";
+    return "reads a parameter whose name is not constant";
   case OutsideSources:
     return "compared in code that is not yours";
   case WithoutDebugInfo:

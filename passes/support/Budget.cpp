@@ -38,10 +38,10 @@ Budget::~Budget() { Current = Outer; }
 bool Budget::look() {
   if (MaxSeconds && seconds() - SecondsBefore > MaxSeconds)
     Why = "the analysis takes more than " + std::to_string(MaxSeconds) +
-          " s (more: -tpc-max-seconds, TPC_MAX_SECONDS in CMake)";
+          " s (-tpc-max-seconds raises the limit, TPC_MAX_SECONDS in CMake)";
   else if (MaxMemory && memory() - MemoryBefore > MaxMemory)
     Why = "the analysis takes more than " + std::to_string(MaxMemory) +
-          " MiB (more: -tpc-max-memory, TPC_MAX_MEMORY in CMake)";
+          " MiB (-tpc-max-memory raises the limit, TPC_MAX_MEMORY in CMake)";
   return Spent = !Why.empty();
 }
 

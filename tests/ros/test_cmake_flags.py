@@ -313,7 +313,7 @@ def test_a_sanitizer_that_comes_after_project_is_said_to_be_lost(tmp_path: Path)
         "add_library(y STATIC main.cpp)\n"
     )
     (warning,) = build(tmp_path, lists).warnings()
-    assert warning.startswith("TPC: lost in what is built with TPC: -fsanitize=address of x; ")
+    assert warning.startswith("TPC: has no effect in a build with TPC: -fsanitize=address of x; ")
     late = 'set(CMAKE_CXX_FLAGS "${CMAKE_CXX_FLAGS} --coverage")\n'
     lists = f"{HEAD}{late}add_library(z STATIC main.cpp)\n"
     (warning,) = build(tmp_path, lists, name="late").warnings()
@@ -420,7 +420,7 @@ def test_a_target_can_be_left_out_and_a_test_is(tmp_path: Path) -> None:
     reasons = {unit.name: unit.left_out for unit in recorded_units(result.folder) or ()}
     assert reasons == {
         "quiet": "its property TPC_INSTRUMENT is OFF",
-        "t": "it is a test (TPC_TESTS=ON has tests analysed, too)",
+        "t": "it is a test (set TPC_TESTS=ON to analyse tests too)",
         "u": "",
         "x": "",
     }
@@ -443,7 +443,7 @@ def test_what_carries_reports_makes_none(tmp_path: Path) -> None:
     assert result.analysed() == ["y"]
     reasons = {unit.name: unit.left_out for unit in recorded_units(result.folder) or ()}
     assert reasons == {
-        "x": "its code carries the reports (its property TPC_INSTRUMENT has it analysed, too)",
+        "x": "its code carries the reports (set its property TPC_INSTRUMENT to analyse it too)",
         "y": "",
     }
 

@@ -13,7 +13,7 @@
 // A crash inside the analysis costs one warning and a record, not the build:
 // the program is linked without reports. So does a stack that is used up, what
 // LLVM calls a fatal error, and memory that is not there.
-// WARN: warning: node: the analysis crashed; this link unit is left as it was
+// WARN: warning: node: the analysis crashed; this link unit is not changed
 // WARN-NOT: {{.}}
 // CHECK: published out 3
 // JSON-DAG: "status": "failed"

@@ -11,7 +11,7 @@
 // What reports need (std::max inlined, `load` copied for each of its calls) is
 // not done to a unit that gets none: not where the analysis fails when it has
 // seen all, and not where only its static information is asked for.
-// CHECK: warning: node: the analysis crashed; this link unit is left as it was
+// CHECK: warning: node: the analysis crashed; this link unit is not changed
 // REPORTS-DAG: call void @_Z7log_onePcbddb
 // REPORTS-DAG: define internal {{.*}} @_Z4loadRN3ros10NodeHandleEPKcRd.tpc.1(
 #include <ros/ros.h>

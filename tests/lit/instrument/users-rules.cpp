@@ -6,7 +6,7 @@
 // exposes. A file that is no JSON is a failure with its name, and the program
 // is linked all the same.
 // CHECK: comparisons of {{.*}}: 1
-// BROKEN: warning: node: {{.*}}broken-rules.json: {{.*}}; this link unit is left as it was
+// BROKEN: warning: node: {{.*}}broken-rules.json: {{.*}}; this link unit is not changed
 namespace own {
 template <typename T> struct Box {
   T setting(const char *Name);
