@@ -80,7 +80,7 @@ char *MappedFile::map(uint64_t At, size_t Size, std::string &Why) const {
                  static_cast<off_t>(At));
   if (P != MAP_FAILED)
     return static_cast<char *>(P);
-  Why = "mapping it: " + errorText(errno);
+  Why = "cannot map it: " + errorText(errno);
   return nullptr;
 }
 
@@ -170,8 +170,7 @@ void MappedFile::stop(const std::string &Why) {
   if (Stopped.exchange(true))
     return;
   Header->State = layout::Stopped;
-  warn(Path + ": " + Why +
-       "; nothing more is recorded, the program goes on as if it were");
+  warn(Path + ": " + Why + "; recording stops, and the program continues");
 }
 
 void MappedFile::touch() {

@@ -250,8 +250,8 @@ void Runtime::startHelper() {
   if (HelperRuns)
     pthread_setname_np(Helper, "tpc");
   else
-    warn("no thread could be made: settings cannot be changed while it runs, "
-         "and summaries are written at its end");
+    warn("cannot start a thread: settings cannot be changed while the program "
+         "runs, and summaries are written when it ends");
   pthread_sigmask(SIG_SETMASK, &Old, nullptr);
 }
 

@@ -124,7 +124,7 @@ void Control::takeFrom(const char *Place, Config &New, const Config &Now,
     return;
   if (Found.getType() != XmlRpc::XmlRpcValue::TypeStruct) {
     Complaints.push_back("the parameter " + Folder +
-                         " is no folder of parameters; left as it was");
+                         " is not a namespace of parameters and is ignored");
     return;
   }
   for (auto &[Name, Value] : Found) {
@@ -139,7 +139,7 @@ void Control::takeFrom(const char *Place, Config &New, const Config &Now,
     if (textOf(Name, Value, Text) && parse(New, Name, Text, Why))
       continue;
     keep(New, Now, Name);
-    Complaints.push_back("the parameter " + Parameter + " is left out: " + Why);
+    Complaints.push_back("the parameter " + Parameter + " is ignored: " + Why);
   }
 }
 
@@ -148,8 +148,8 @@ Control::Texts Control::takeParameters() {
   // Asked first, because the calls below cannot distinguish a parameter that is
   // not set from a master that does not answer.
   if (!ros::master::check()) {
-    Complaints.push_back("the ROS master does not answer; the settings are "
-                         "left as they were");
+    Complaints.push_back("the ROS master does not answer; the settings "
+                         "stay as they are");
     return Complaints;
   }
   const Config Now = current();
@@ -157,7 +157,8 @@ Control::Texts Control::takeParameters() {
   takeFrom("/tpc", New, Now, Complaints);
   takeFrom("~tpc", New, Now, Complaints);
   if (!(New == Now) && !apply(New))
-    Complaints.push_back("what is set cannot be had; left as it was");
+    Complaints.push_back(
+        "the settings cannot be applied; the previous ones stay");
   return Complaints;
 }
 
@@ -176,8 +177,9 @@ bool Control::reload(std_srvs::Trigger::Request &,
 void Control::begin() {
   if (!ros::master::check()) {
     if (!Failed)
-      warn("the ROS master does not answer: parameters and " +
-           ros::names::resolve(Service) + " come when it does");
+      warn("the ROS master does not answer yet: its parameters are not read, "
+           "and " +
+           ros::names::resolve(Service) + " is not advertised");
     RetryAt = (Clock::now() + Retry).time_since_epoch().count();
     Retry = std::min(2 * Retry, LastRetry);
     Failed = true;

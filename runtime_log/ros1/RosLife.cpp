@@ -59,8 +59,8 @@ void warnOfFork(const char *Topic) {
   static std::atomic<bool> Said{false};
   if (!Said.exchange(true))
     warn("process " + std::to_string(getpid()) +
-         " was forked from a node: its reports are not on " + Topic +
-         "; the sink file has them");
+         " was forked from a node: its reports do not reach " + Topic +
+         "; the sink file records them");
 }
 
 bool rosIsUp() {

@@ -205,7 +205,7 @@ void TopicSink::advertise() {
     GatherUntil = Clock::steady() + GatherNs;
   } else if (!ros::isShuttingDown()) {
     warn("nothing is sent on " + Options.topic +
-         ": this process has it with another type");
+         ": this process uses the topic with another type");
   }
   Advertised = true;
 }
