@@ -2,7 +2,7 @@
 // RUN: %opt -disable-output -passes=tpc -tpc-static-info=%t.json %t.o
 // RUN: %python %inputs/show.py spots %t.json | FileCheck %s --match-full-lines
 //
-// Where the analysis does not see on: each place once, by kind.
+// Where the analysis has blind spots: each place once, by kind.
 #include <ros/ros.h>
 
 #include <functional>

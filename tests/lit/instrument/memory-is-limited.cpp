@@ -4,7 +4,7 @@
 // RUN: %t | FileCheck %s --implicit-check-not=report
 // RUN: FileCheck %s --check-prefix=JSON --input-file=%t.json
 //
-// As with time, so with memory: one warning, a record, no reports.
+// As for time, so for memory: one warning, an entry in the file, no reports.
 // WARN: warning: node: the analysis takes more than 64 MiB (-tpc-max-memory raises the limit, TPC_MAX_MEMORY in CMake); this link unit is not changed
 // WARN-NOT: {{.}}
 // CHECK: published out 3
