@@ -19,6 +19,12 @@ struct Section {
   ArrayRef<StringLiteral> Required;
 };
 
+/// A list of names at the top of a file.
+struct NameList {
+  StringLiteral Key;
+  std::vector<std::string> RuleFile::*Names;
+};
+
 class Reader {
 public:
   Reader(StringRef Origin, StringRef Profile)
@@ -67,6 +73,13 @@ static const Section Sections[] = {
     {"configs", Rule::Config, {}, {}},
     {"text", Rule::Text, TextKeys, TextKeys},
     {"held", Rule::Held, HeldKeys, TextKeys},
+};
+
+static constexpr NameList NameLists[] = {
+    {"opaque", &RuleFile::Opaque},
+    {"kept", &RuleFile::Kept},
+    {"counting", &RuleFile::Counting},
+    {"transparent", &RuleFile::Transparent},
 };
 
 /// Sorted, so that the first error reported for a file is always the same.
@@ -249,17 +262,10 @@ Error Reader::file(const json::Value &Value, RuleFile &Out) {
     } else if (Key == "schema") {
       if (V.getAsInteger() != 1)
         return wrong(Place, "must be 1");
-    } else if (Key == "opaque") {
-      if (Error E = texts(V, Place, Out.Opaque))
-        return E;
-    } else if (Key == "kept") {
-      if (Error E = texts(V, Place, Out.Kept))
-        return E;
-    } else if (Key == "counting") {
-      if (Error E = texts(V, Place, Out.Counting))
-        return E;
-    } else if (Key == "transparent") {
-      if (Error E = texts(V, Place, Out.Transparent))
+    } else if (const auto *List = find_if(
+                   NameLists, [&](const NameList &L) { return L.Key == Key; });
+               List != std::end(NameLists)) {
+      if (Error E = texts(V, Place, Out.*List->Names))
         return E;
     } else if (Key == "containers") {
       if (Error E = containers(V, Place, Out))

@@ -16,13 +16,21 @@
 
 namespace tpc {
 
+/// Calls \p F with the numbers that \p In has for \p Key.
+template <typename Map, typename Fn>
+void eachOf(const Map &In, const typename Map::key_type &Key, Fn F) {
+  if (auto It = In.find(Key); It != In.end())
+    llvm::for_each(It->second, F);
+}
+
 /// Numbers by location.
 class LocationIndex {
 public:
   explicit LocationIndex(const Aliases &Alias) : Alias(Alias) {}
 
-  /// The last step of a location, or its root if there is no step.
-  using Slot = std::pair<const void *, unsigned>;
+  /// The last step of a location, or its root if there is no step. The number
+  /// of a class is shifted so that it is never the address of a root.
+  using Slot = std::pair<uintptr_t, unsigned>;
   static Slot slotOf(const Location &L) { return slotOf(L.Root, L.Path); }
 
   void add(unsigned N, const Location &L) { add(N, L, L.Path.size()); }
@@ -32,7 +40,7 @@ public:
   /// Calls \p F with the numbers of locations with the same last step and root
   /// as \p L; the root may be null.
   template <typename Fn> void eachWithRootOf(const Location &L, Fn F) const {
-    visit(Exact, std::pair(slotOf(L), L.Root), F);
+    eachOf(Exact, std::pair(slotOf(L), L.Root), F);
   }
   /// Calls \p F with the numbers of locations that can be \p L.
   template <typename Fn> void eachAt(const Location &L, Fn F) const {
@@ -46,11 +54,6 @@ private:
   static Slot slotOf(const llvm::Value *Root, llvm::ArrayRef<Step> Path);
   template <typename Fn>
   void eachAt(const Location &L, size_t Steps, Fn F) const;
-  template <typename Map, typename Fn>
-  static void visit(const Map &In, const typename Map::key_type &Key, Fn F) {
-    if (auto It = In.find(Key); It != In.end())
-      llvm::for_each(It->second, F);
-  }
 
   const Aliases &Alias;
   llvm::DenseMap<std::pair<Slot, const llvm::Value *>,
@@ -71,8 +74,7 @@ public:
   template <typename Fn> void eachAround(const Location &L, Fn F) const {
     ByLocation.eachAround(L, F);
     if (!L.Root && !L.Path.empty())
-      if (auto It = ByClass.find(L.Path[0].Type); It != ByClass.end())
-        llvm::for_each(It->second, F);
+      eachOf(ByClass, L.Path[0].Type, F);
   }
 
 private:
@@ -98,8 +100,7 @@ public:
     llvm::SmallSetVector<unsigned, 8> Classes;
     Types.addClassesIn(Types.typeAt(Object), Classes);
     for (unsigned Class : Classes)
-      if (auto It = ByClass.find(Class); It != ByClass.end())
-        llvm::for_each(It->second, F);
+      eachOf(ByClass, Class, F);
   }
 
 private:
@@ -113,11 +114,12 @@ private:
 template <typename Fn>
 void LocationIndex::eachAt(const Location &L, size_t Steps, Fn F) const {
   Slot Here = slotOf(L.Root, llvm::ArrayRef(L.Path).take_front(Steps));
-  visit(Exact, std::pair(Here, L.Root), F);
+  eachOf(Exact, std::pair(Here, L.Root), F);
   if (!L.Root)
-    visit(Rooted, Here, F);
+    eachOf(Rooted, Here, F);
   else if (Steps && Alias.isReachable(L))
-    visit(Exact, std::pair(Here, static_cast<const llvm::Value *>(nullptr)), F);
+    eachOf(Exact, std::pair(Here, static_cast<const llvm::Value *>(nullptr)),
+           F);
 }
 
 template <typename Fn>

@@ -33,16 +33,43 @@ SmallVector<Hop, 16> ParameterUsage::pathTo(unsigned Last) const {
   return Path;
 }
 
-bool comparesValues(const CmpInst &Compare) {
-  switch (Compare.getPredicate()) {
-  case CmpInst::FCMP_FALSE:
-  case CmpInst::FCMP_TRUE:
-  case CmpInst::FCMP_ORD:
-  case CmpInst::FCMP_UNO:
-    return false;
+StringRef relationOf(CmpInst::Predicate P) {
+  switch (P) {
+  case CmpInst::ICMP_EQ:
+  case CmpInst::FCMP_OEQ:
+  case CmpInst::FCMP_UEQ:
+    return "==";
+  case CmpInst::ICMP_NE:
+  case CmpInst::FCMP_ONE:
+  case CmpInst::FCMP_UNE:
+    return "!=";
+  case CmpInst::ICMP_SGT:
+  case CmpInst::ICMP_UGT:
+  case CmpInst::FCMP_OGT:
+  case CmpInst::FCMP_UGT:
+    return ">";
+  case CmpInst::ICMP_SGE:
+  case CmpInst::ICMP_UGE:
+  case CmpInst::FCMP_OGE:
+  case CmpInst::FCMP_UGE:
+    return ">=";
+  case CmpInst::ICMP_SLT:
+  case CmpInst::ICMP_ULT:
+  case CmpInst::FCMP_OLT:
+  case CmpInst::FCMP_ULT:
+    return "<";
+  case CmpInst::ICMP_SLE:
+  case CmpInst::ICMP_ULE:
+  case CmpInst::FCMP_OLE:
+  case CmpInst::FCMP_ULE:
+    return "<=";
   default:
-    return true;
+    return "";
   }
+}
+
+bool comparesValues(const CmpInst &Compare) {
+  return !relationOf(Compare.getPredicate()).empty();
 }
 
 /// True for operations that combine two truth values into one.

@@ -20,8 +20,12 @@
 
 namespace tpc {
 
-/// True if \p Compare compares the values of its operands. `isunordered(a, b)`
-/// asks whether they are numbers, and `fcmp true` asks nothing.
+/// The operator of the source for \p P; empty if \p P does not compare values:
+/// `isunordered(a, b)` asks whether they are numbers, and `fcmp true` asks
+/// nothing.
+llvm::StringRef relationOf(llvm::CmpInst::Predicate P);
+
+/// True if \p Compare compares the values of its operands.
 bool comparesValues(const llvm::CmpInst &Compare);
 
 /// One step of the path of a value.

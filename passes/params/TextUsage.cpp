@@ -1,6 +1,8 @@
 //===- TextUsage.cpp ------------------------------------------------------===//
 #include "params/TextUsage.h"
 
+#include "params/ParamUsageFinder.h"
+
 #include "llvm/IR/Module.h"
 #include "llvm/Support/CommandLine.h"
 
@@ -52,24 +54,10 @@ SmallVector<CallBase *, 2> TextUsage::numbersFrom(const CallBase &Into,
 /// with zero; otherwise empty.
 static StringRef relationToZero(const CmpInst &Compare, const Value *Result) {
   const auto *Zero = dyn_cast<ConstantInt>(Compare.getOperand(1));
-  if (Compare.getOperand(0) != Result || !Zero || !Zero->isZero())
+  if (Compare.getOperand(0) != Result || !Zero || !Zero->isZero() ||
+      Compare.isUnsigned())
     return "";
-  switch (Compare.getPredicate()) {
-  case CmpInst::ICMP_EQ:
-    return "==";
-  case CmpInst::ICMP_NE:
-    return "!=";
-  case CmpInst::ICMP_SLT:
-    return "<";
-  case CmpInst::ICMP_SLE:
-    return "<=";
-  case CmpInst::ICMP_SGT:
-    return ">";
-  case CmpInst::ICMP_SGE:
-    return ">=";
-  default:
-    return "";
-  }
+  return relationOf(Compare.getPredicate());
 }
 
 /// `<` for `>`, if the threshold is on the left.

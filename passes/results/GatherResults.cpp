@@ -53,40 +53,11 @@ StringRef Comparison::relation() const {
     return TextRelation;
   if (!Compare)
     return "flag";
-  CmpInst::Predicate P =
-      Threshold == 1 ? Compare->getPredicate() : Compare->getSwappedPredicate();
-  switch (P) {
-  case CmpInst::ICMP_EQ:
-  case CmpInst::FCMP_OEQ:
-  case CmpInst::FCMP_UEQ:
-    return "==";
-  case CmpInst::ICMP_NE:
-  case CmpInst::FCMP_ONE:
-  case CmpInst::FCMP_UNE:
-    return "!=";
-  case CmpInst::ICMP_SGT:
-  case CmpInst::ICMP_UGT:
-  case CmpInst::FCMP_OGT:
-  case CmpInst::FCMP_UGT:
-    return ">";
-  case CmpInst::ICMP_SGE:
-  case CmpInst::ICMP_UGE:
-  case CmpInst::FCMP_OGE:
-  case CmpInst::FCMP_UGE:
-    return ">=";
-  case CmpInst::ICMP_SLT:
-  case CmpInst::ICMP_ULT:
-  case CmpInst::FCMP_OLT:
-  case CmpInst::FCMP_ULT:
-    return "<";
-  case CmpInst::ICMP_SLE:
-  case CmpInst::ICMP_ULE:
-  case CmpInst::FCMP_OLE:
-  case CmpInst::FCMP_ULE:
-    return "<=";
-  default:
-    llvm_unreachable("see comparesValues()");
-  }
+  StringRef Relation =
+      relationOf(Threshold == 1 ? Compare->getPredicate()
+                                : Compare->getSwappedPredicate());
+  assert(!Relation.empty() && "see comparesValues()");
+  return Relation;
 }
 
 /// The nearest predicate that \p C decides and an exposing statement depends
