@@ -148,9 +148,11 @@ std::optional<Report> planReport(const Comparison &C, bool IsUnsigned,
     return R;
   }
   Instruction *Result = findJoined(C.Compare, Analysed);
+  assert(Result && "the comparison has a counterpart, so the chain has one");
   R.Result = Result;
-  R.Before = Result ? insertionPointAfter(*Result) : nullptr;
-  return R.Before ? std::optional(R) : std::nullopt;
+  R.Before = insertionPointAfter(*Result);
+  assert(R.Before && "only an invoke may end a block, and the chain has none");
+  return R;
 }
 
 /// \p V as a double.
