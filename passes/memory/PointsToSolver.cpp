@@ -5,16 +5,21 @@
 #include "support/Functions.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/ADT/Statistic.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Operator.h"
 #include "llvm/Support/CommandLine.h"
+#include "llvm/Support/Debug.h"
 
 #include <utility>
 
 using namespace llvm;
 
 namespace tpc {
+
+#define DEBUG_TYPE "tpc-points-to"
+STATISTIC(NumRounds, "Rounds of the points-to analysis");
 
 /// Each round follows pointers through memory one step further. Linked lists of
 /// allocations would never end.
@@ -335,9 +340,14 @@ void PointsToSolver::findTargets() {
   makeNodes();
   // If a pointer turns out to lead to more than it should, the pointers that
   // depend on it are computed again.
-  while (findComplete() && !Budget::isSpent())
-    for (unsigned Round = 0; Round < MaxRounds && propagate(); ++Round)
-      ;
+  while (findComplete() && !Budget::isSpent()) {
+    unsigned Round = 0;
+    while (Round < MaxRounds && propagate())
+      ++Round;
+    NumRounds += Round;
+    if (Round == MaxRounds)
+      LLVM_DEBUG(dbgs() << "points-to: stopped at the limit of rounds\n");
+  }
 }
 
 } // namespace tpc

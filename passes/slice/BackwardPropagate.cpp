@@ -13,6 +13,7 @@
 #include "support/Print.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/ADT/Statistic.h"
 #include "llvm/Analysis/ValueTracking.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Module.h"
@@ -20,6 +21,9 @@
 using namespace llvm;
 
 namespace tpc {
+
+#define DEBUG_TYPE "tpc-backward-propagate"
+STATISTIC(NumPredicates, "Predicates that an exposing statement depends on");
 
 AnalysisKey BackwardPropagate::Key;
 
@@ -438,7 +442,9 @@ SliceResult Slicer::run() {
 }
 
 SliceResult BackwardPropagate::run(Module &M, ModuleAnalysisManager &AM) {
-  return Slicer(M, AM).run();
+  SliceResult R = Slicer(M, AM).run();
+  NumPredicates += R.numPredicates();
+  return R;
 }
 
 PreservedAnalyses BackwardPropagatePrinter::run(Module &M,
