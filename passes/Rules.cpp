@@ -204,7 +204,7 @@ const RuleMatches::Inlined &RuleMatches::inlined(const DISubprogram &F) const {
 
 const ContainerMethod *RuleMatches::container(const CallBase &Call) const {
   const Function *Callee = Call.getCalledFunction();
-  auto It = Callee ? Containers.find(Callee) : Containers.end();
+  const auto *It = Callee ? Containers.find(Callee) : Containers.end();
   return It == Containers.end() ? nullptr : &It->second;
 }
 

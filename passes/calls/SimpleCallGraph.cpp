@@ -26,12 +26,12 @@ STATISTIC(NumUnresolved, "Indirect calls whose targets are not known");
 AnalysisKey SimpleCallGraph::Key;
 
 ArrayRef<CallBase *> CallGraphResult::callers(const Function *F) const {
-  auto It = Callers.find(F);
+  const auto *It = Callers.find(F);
   return It == Callers.end() ? ArrayRef<CallBase *>() : ArrayRef(It->second);
 }
 
 ArrayRef<Instruction *> CallGraphResult::mentions(const Function *F) const {
-  auto It = Mentions.find(F);
+  const auto *It = Mentions.find(F);
   return It == Mentions.end() ? ArrayRef<Instruction *>()
                               : ArrayRef(It->second);
 }

@@ -145,8 +145,10 @@ pathToHandler(const InvokeInst &Invoke, ThrownType Thrown,
       Sure.push_back(Next);
     } else if (const auto *Inner = dyn_cast<InvokeInst>(&T)) {
       Next = Inner->getNormalDest();
-    } else if (!(Next = BB->getUniqueSuccessor())) {
-      break;
+    } else {
+      Next = BB->getUniqueSuccessor();
+      if (!Next)
+        break;
     }
     From = std::exchange(BB, Next);
   }
@@ -189,7 +191,8 @@ Flow::Flow(Function &F, UserSources &Sources, const ThrowsResult &Thrown) {
       invoke(Ends.back(), *Invoke, Thrown);
   }
   NumThrown = Copies.size();
-  Plain.insert(Plain.end(), Threaded.begin() + Plain.size(), Threaded.end());
+  auto Added = drop_begin(Threaded, Plain.size());
+  Plain.insert(Plain.end(), Added.begin(), Added.end());
   for (BasicBlock &BB : F) {
     unsigned N = Ends[Id.lookup(&BB)];
     Instruction *T = BB.getTerminator();
@@ -214,7 +217,7 @@ Flow::Flow(Function &F, UserSources &Sources, const ThrowsResult &Thrown) {
 /// The node that holds the terminator of \p BB; creates the nodes before it.
 unsigned Flow::endOf(BasicBlock &BB) {
   unsigned N = Id.lookup(&BB), Size = Blocks.size();
-  auto It = Left.find(&BB);
+  auto *It = Left.find(&BB);
   if (It == Left.end())
     return N;
   for (Instruction *Call : It->second) {
@@ -296,7 +299,8 @@ void Flow::findEntered() {
       if (!ReachedPlain[N])
         Plain[N].clear();
   }
-  Entered.assign(Reached.begin(), Reached.begin() + Blocks.size());
+  Reached.resize(Blocks.size());
+  Entered = std::move(Reached);
   MapVector<unsigned, SmallVector<unsigned, 2>> Gone;
   for (const Copy &C : Copies)
     Gone[idOf(C.BB)].push_back(idOf(C.Next));

@@ -155,7 +155,7 @@ IfStatementsResult IfStatements::run(Module &M, ModuleAnalysisManager &AM) {
     for (auto &[BB, Calls] : Graphs.Left)
       R.Parted[BB] = std::move(Calls);
     for (Instruction *I : Graphs.Decider)
-      if (I && isa<InvokeInst>(I))
+      if (isa_and_nonnull<InvokeInst>(I))
         R.Choosing.insert(I);
   }
   return R;

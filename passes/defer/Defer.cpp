@@ -77,10 +77,11 @@ static void registerPasses(PassBuilder &PB) {
       });
   if (PassInstrumentationCallbacks *Callbacks =
           PB.getPassInstrumentationCallbacks())
-    Callbacks->registerShouldRunOptionalPassCallback([](StringRef Pass, Any) {
-      return HasCoroutines && (Pass == "ModuleInlinerWrapperPass" ||
-                               Pass == "DevirtSCCRepeatedPass");
-    });
+    Callbacks->registerShouldRunOptionalPassCallback(
+        [](StringRef Pass, const Any &) {
+          return HasCoroutines && (Pass == "ModuleInlinerWrapperPass" ||
+                                   Pass == "DevirtSCCRepeatedPass");
+        });
 }
 
 extern "C" LLVM_ATTRIBUTE_WEAK PassPluginLibraryInfo llvmGetPassPluginInfo() {

@@ -185,7 +185,7 @@ void LocalWrites::keepReaching(const Instruction &At, const Location &L,
   // block if no write replaced the value.
   auto Through = [&](const BasicBlock *BB, const Instruction *Below) {
     ++Walked;
-    if (auto It = Past.Events.find(BB); It != Past.Events.end())
+    if (const auto *It = Past.Events.find(BB); It != Past.Events.end())
       for (const Instruction *I : reverse(It->second)) {
         if (Below && !I->comesBefore(Below))
           continue;

@@ -173,7 +173,8 @@ bool LocationTypes::descend(Location &L, int64_t &Offset, Type *Until) {
     if (!T || !T->isSized())
       return false;
     bool InArray = Whole->isArrayTy();
-    if (int64_t Bytes = Layout.getTypeAllocSize(T).getFixedValue();
+    if (auto Bytes =
+            static_cast<int64_t>(Layout.getTypeAllocSize(T).getFixedValue());
         InArray && Bytes) {
       int64_t By =
           Offset >= 0 ? Offset / Bytes : -((Bytes - 1 - Offset) / Bytes);
@@ -196,7 +197,8 @@ bool LocationTypes::descend(Location &L, int64_t &Offset, Type *Until) {
       return false;
     unsigned Field = Fields->getElementContainingOffset(Offset);
     enterField(L, Class, Field);
-    Offset -= Fields->getElementOffset(Field);
+    Offset -=
+        static_cast<int64_t>(Fields->getElementOffset(Field).getFixedValue());
   }
 }
 
@@ -211,8 +213,9 @@ void LocationTypes::addScalarsOf(const Location &L, Type *T, int64_t At,
     return;
   if (T->isArrayTy()) {
     Type *Element = elementOf(T);
-    int64_t Bytes = Layout.getTypeAllocSize(Element).getFixedValue();
-    int64_t End = Layout.getTypeAllocSize(T).getFixedValue();
+    auto Bytes =
+        static_cast<int64_t>(Layout.getTypeAllocSize(Element).getFixedValue());
+    auto End = static_cast<int64_t>(Layout.getTypeAllocSize(T).getFixedValue());
     int64_t Begin = Bytes && At < 0 ? -At / Bytes * Bytes : 0;
     for (int64_t Here = Begin;
          Bytes && Here < End && At + Here < static_cast<int64_t>(Size) &&

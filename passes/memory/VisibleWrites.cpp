@@ -32,9 +32,9 @@ VisibleWrites::Writes VisibleWrites::allWrites(const Location &L) {
 
 /// Each write is compared with each read. A variable with more writes is
 /// usually a buffer or a counter; all its writes count as visible.
-static cl::opt<unsigned> MaxNarrowed(
-    "tpc-max-narrowed-writes", cl::Hidden, cl::init(64),
-    cl::desc("Writes of one variable whose readers are computed"));
+static cl::opt<unsigned>
+    MaxNarrowed("tpc-max-narrowed-writes", cl::Hidden, cl::init(64),
+                cl::desc("Writes of one variable whose readers are computed"));
 
 static bool isLocalOf(const Location &L, const Instruction &At) {
   const auto *Local = dyn_cast_or_null<AllocaInst>(L.Root);
@@ -214,7 +214,7 @@ SmallVector<Instruction *, 8> VisibleWrites::writesInto(const Location &L,
   auto Stays = [&](const Instruction &Write, const Location &Where) {
     if (!Local) {
       auto Way = Alias.partOf(L, Where);
-      auto It = find_if(Parts, [&](const Part &P) {
+      auto *It = find_if(Parts, [&](const Part &P) {
         return Way && Location::areSame(P.Way, *Way);
       });
       std::optional<Reaching::Variable> Read;

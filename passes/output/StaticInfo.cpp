@@ -285,7 +285,7 @@ static std::string written(json::Object O) {
   for (char C : Text) {
     Shifted += C;
     if (C == '\n')
-      Shifted.append(2 * Indent, ' ');
+      Shifted.append(size_t(2) * Indent, ' ');
   }
   return Shifted;
 }
