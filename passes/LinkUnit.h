@@ -1,4 +1,4 @@
-//===- LinkUnit.h - What happens to one link unit -------------------------===//
+//===- LinkUnit.h - The passes that run on a link unit --------------------===//
 #ifndef TPC_LINKUNIT_H
 #define TPC_LINKUNIT_H
 

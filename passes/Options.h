@@ -1,4 +1,4 @@
-//===- Options.h - What a build tells the plugin --------------------------===//
+//===- Options.h - The options of the plugin ------------------------------===//
 #ifndef TPC_OPTIONS_H
 #define TPC_OPTIONS_H
 

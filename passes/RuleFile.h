@@ -1,4 +1,4 @@
-//===- RuleFile.h - One file of rules -------------------------------------===//
+//===- RuleFile.h - Reads a file of rules ---------------------------------===//
 //
 // Reads rows from JSON. rules/rules.schema.json defines the format. An error
 // names the file and the place in it.

@@ -1,4 +1,4 @@
-//===- Rules.h - The tables that drive the analysis -----------------------===//
+//===- Rules.h - The rules that drive the analysis ------------------------===//
 //
 // The tables say which calls read a parameter, which expose the state of a
 // node, which give a publisher its topic and which give a node handle its

@@ -1,4 +1,4 @@
-//===- Config.h - What a process reports, and where to --------------------===//
+//===- Config.h - The settings --------------------------------------------===//
 #ifndef TPC_CONFIG_H
 #define TPC_CONFIG_H
 

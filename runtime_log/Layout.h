@@ -1,4 +1,4 @@
-//===- Layout.h - The binary file of reports, byte for byte ---------------===//
+//===- Layout.h - The layout of the binary file ---------------------------===//
 //
 // docs/reference/formats.md describes it in words. Little endian; unwritten
 // bytes are zero. The field `What` of a record is written last, so that a

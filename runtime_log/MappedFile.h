@@ -1,4 +1,4 @@
-//===- MappedFile.h - The mapped file, chunk by chunk ---------------------===//
+//===- MappedFile.h - The space of the mapped file ------------------------===//
 //
 // Space is allocated on the disk before it is mapped, so that a full disk is an
 // error and not a signal. The helper thread touches the pages in advance, so

@@ -1,4 +1,4 @@
-//===- Modes.h - What log_one looks at ------------------------------------===//
+//===- Modes.h - The state that log_one reads -----------------------------===//
 #ifndef TPC_MODES_H
 #define TPC_MODES_H
 

@@ -1,4 +1,4 @@
-//===- NewFile.h - A file of reports that is being made -------------------===//
+//===- NewFile.h - Creates a file of reports ------------------------------===//
 //
 // Where the file is created and what it is called: the folder in the settings,
 // then the node or the program, the process and the time. The file gets its

@@ -1,4 +1,4 @@
-//===- Report.h - What is reported, and its text --------------------------===//
+//===- Report.h - Reports, and their text ---------------------------------===//
 #ifndef TPC_REPORT_H
 #define TPC_REPORT_H
 

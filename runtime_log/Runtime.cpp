@@ -1,4 +1,4 @@
-//===- Runtime.cpp - What is chosen, and the helper thread ----------------===//
+//===- Runtime.cpp - The chosen settings, and the helper thread -----------===//
 #include "Runtime.h"
 
 #include "Edges.h"
@@ -23,7 +23,7 @@ static constexpr int64_t FirstAdjustNs = 10'000'000;
 static constexpr int64_t Jump = 1'000'000;
 
 //===----------------------------------------------------------------------===//
-// What log_one looks at
+// The state that log_one reads
 //===----------------------------------------------------------------------===//
 
 std::atomic<Mode> NowMode{Mode::NotStarted};
@@ -436,7 +436,7 @@ void Runtime::afterFork(bool IsChild) {
 } // namespace
 
 //===----------------------------------------------------------------------===//
-// The entrances
+// Entry points
 //===----------------------------------------------------------------------===//
 
 Config current() { return Runtime::of().current(); }

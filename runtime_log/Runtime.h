@@ -1,4 +1,4 @@
-//===- Runtime.h - What is chosen, and the helper thread ------------------===//
+//===- Runtime.h - The chosen settings, and the helper thread -------------===//
 #ifndef TPC_RUNTIME_H
 #define TPC_RUNTIME_H
 

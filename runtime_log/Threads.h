@@ -1,4 +1,4 @@
-//===- Threads.h - What each reporting thread has of its own --------------===//
+//===- Threads.h - The state of each reporting thread ---------------------===//
 #ifndef TPC_THREADS_H
 #define TPC_THREADS_H
 

@@ -1,4 +1,4 @@
-//===- TopicStore.h - What waits to be sent on the topic ------------------===//
+//===- TopicStore.h - Reports that wait for the topic ---------------------===//
 //
 // Does not depend on ROS: bytes in, text out. docs/reference/formats.md defines
 // the lines.

@@ -1,4 +1,4 @@
-//===- Arguments.h - What a compiler is asked for ---------------*- C++ -*-===//
+//===- Arguments.h - What the compiler is asked to do -----------*- C++ -*-===//
 //
 // Reads the arguments of a compiler as clang's driver does, as far as needed to
 // know whether it compiles, links or only answers a question.

@@ -1,4 +1,4 @@
-//===- Environment.h - What is around a compiler's command ------*- C++ -*-===//
+//===- Environment.h - The environment of a compiler command ----*- C++ -*-===//
 //
 // The installed parts of TPC, the programs, the variables of the environment
 // and the project of the working folder.

@@ -1,4 +1,4 @@
-//===- Plan.h - What is added to a compiler's command -----------*- C++ -*-===//
+//===- Plan.h - What is added to a compiler command -------------*- C++ -*-===//
 #ifndef TPC_WRAPPER_PLAN_H
 #define TPC_WRAPPER_PLAN_H
 

@@ -1,4 +1,4 @@
-//===- Flow.h - The flow graphs that control dependence is taken from -----===//
+//===- Flow.h - The flow graphs that define control dependence ------------===//
 #ifndef TPC_FLOW_H
 #define TPC_FLOW_H
 

@@ -26,7 +26,7 @@ static cl::opt<unsigned> MaxBases(
     cl::desc("Base classes of an exception that are compared with a handler"));
 
 //===----------------------------------------------------------------------===//
-// Which handler takes what
+// What a handler catches
 //===----------------------------------------------------------------------===//
 
 /// The mangled name of a type, `St12out_of_range`.

@@ -1,4 +1,4 @@
-//===- Throws.h - Which calls throw, as the source says -------------------===//
+//===- Throws.h - Which calls throw, according to the source --------------===//
 //
 // A `throw` in user code leaves its function, and those that call it, until a
 // handler catches it. Code behind such a call is reached only if nothing is

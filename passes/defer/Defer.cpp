@@ -1,4 +1,4 @@
-//===- Defer.cpp - The compiler's own passes wait for the link ------------===//
+//===- Defer.cpp - Postpones optimisation to the link ---------------------===//
 //
 // A plugin for clang. The link analyses the code as clang generated it from the
 // source, so clang runs only those passes that it must; PrelinkPass runs the

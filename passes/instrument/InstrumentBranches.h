@@ -1,4 +1,4 @@
-//===- InstrumentBranches.h - Puts the reports into the program -----------===//
+//===- InstrumentBranches.h - Inserts the reports -------------------------===//
 //
 // Thesis A.13: inserts a call of log_one before each predicate of a threshold
 // predicate comparison, with the key, the outcomes and both values. No other

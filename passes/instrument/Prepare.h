@@ -1,4 +1,4 @@
-//===- Prepare.h - The program as it is analysed --------------------------===//
+//===- Prepare.h - Makes the copy that is analysed ------------------------===//
 //
 // The analysis needs local variables as SSA values, and small library functions
 // (accessors of messages, std::max, the arrow of a smart pointer) inlined, so

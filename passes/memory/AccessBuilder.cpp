@@ -1,4 +1,4 @@
-//===- AccessBuilder.cpp - Files the accesses -----------------------------===//
+//===- AccessBuilder.cpp - Records the accesses ---------------------------===//
 #include "memory/AccessBuilder.h"
 
 #include "support/Budget.h"

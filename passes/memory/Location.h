@@ -1,4 +1,4 @@
-//===- Location.h - A variable, by the way to it --------------------------===//
+//===- Location.h - A variable, as a path from its root -------------------===//
 #ifndef TPC_LOCATION_H
 #define TPC_LOCATION_H
 

@@ -1,4 +1,4 @@
-//===- LocationIndex.h - What is filed by location ------------------------===//
+//===- LocationIndex.h - Finds things by location -------------------------===//
 //
 // Three ways to find the locations that can be the same memory (see Aliases.h)
 // without comparing all of them: at a location, around it and in it. Each

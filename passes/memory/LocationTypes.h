@@ -1,4 +1,4 @@
-//===- LocationTypes.h - What a location is of ----------------------------===//
+//===- LocationTypes.h - The types of locations ---------------------------===//
 //
 // LLVM's type of the object at a location, its class in the source, and how to
 // get from one location to another: into a class, along an array, by a number

@@ -1,4 +1,4 @@
-//===- PointsToSolver.h - Finds what pointers lead to ---------------------===//
+//===- PointsToSolver.h - Computes what pointers lead to ------------------===//
 //
 // Computes the least fixed point of the inclusions in rounds. A pointer is
 // updated when one of its sources has gained targets. The pointers in memory

@@ -192,7 +192,7 @@ bool Reaching::canRun(Way &W, const Function &F) {
 }
 
 //===----------------------------------------------------------------------===//
-// From a write down, from a read up
+// The walks: from a write down, from a read up
 //===----------------------------------------------------------------------===//
 
 /// Goes through \p BB from below \p From, or from its beginning; false if the

@@ -1,4 +1,4 @@
-//===- Follower.cpp - Carries values on -----------------------------------===//
+//===- Follower.cpp - Follows values --------------------------------------===//
 //
 // ParamUsageFinder.cpp handles a value that reaches a comparison.
 //

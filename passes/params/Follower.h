@@ -1,4 +1,4 @@
-//===- Follower.h - The way of a parameter's value ------------------------===//
+//===- Follower.h - Follows the value of a parameter ----------------------===//
 #ifndef TPC_FOLLOWER_H
 #define TPC_FOLLOWER_H
 

@@ -1,4 +1,4 @@
-//===- Idioms.h - What takes several instructions to say ------------------===//
+//===- Idioms.h - Code patterns of several instructions -------------------===//
 //
 // Recognises std::min, std::max and std::clamp after inlining, and the code
 // that people write instead: control flow merges two values, and a comparison

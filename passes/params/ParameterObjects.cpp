@@ -18,7 +18,7 @@ using namespace llvm;
 namespace tpc {
 
 //===----------------------------------------------------------------------===//
-// Objects of which a method gives the value
+// Objects with a method that returns the value
 //===----------------------------------------------------------------------===//
 
 /// An object that a read made: the pointers to it, and where it is stored.
@@ -127,7 +127,7 @@ void findAccessors(Module &M, ModuleAnalysisManager &AM,
 }
 
 //===----------------------------------------------------------------------===//
-// Classes of which each field is a parameter
+// Classes whose fields are all parameters
 //===----------------------------------------------------------------------===//
 
 /// The name of \p Class with its scopes.

@@ -1,4 +1,4 @@
-//===- ParameterObjects.h - Parameters that come in objects ---------------===//
+//===- ParameterObjects.h - Parameters inside of objects ------------------===//
 //
 // Two APIs do not put the value into a variable directly: a read may return an
 // object with a method that returns the value (rclcpp::Parameter::as_double),

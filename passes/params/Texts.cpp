@@ -1,4 +1,4 @@
-//===- Texts.cpp - The way back to what makes a name ----------------------===//
+//===- Texts.cpp - Follows a name back to its origin ----------------------===//
 #include "params/Texts.h"
 
 #include "support/Names.h"
@@ -278,7 +278,7 @@ Texts::Known Texts::find(const Value *Pointer, const Instruction &At, Kind K) {
 }
 
 //===----------------------------------------------------------------------===//
-// What is asked
+// Queries
 //===----------------------------------------------------------------------===//
 
 Texts::Known Texts::knownAt(const Value *Pointer, const Instruction &At) {

@@ -1,4 +1,4 @@
-//===- Texts.h - What a name in the program is ----------------------------===//
+//===- Texts.h - The texts that names are made of -------------------------===//
 //
 // The names of parameters and topics: constants, std::strings that are composed
 // of constants, and the namespaces of node handles. A text is followed back

@@ -130,7 +130,7 @@ json::Value Transform::tree() const {
 }
 
 //===----------------------------------------------------------------------===//
-// The program's operations
+// Operations of the program
 //===----------------------------------------------------------------------===//
 
 std::optional<double> constantNumber(const Value *V, bool Unsigned) {

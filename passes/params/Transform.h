@@ -1,4 +1,4 @@
-//===- Transform.h - Arithmetic that a parameter went through -------------===//
+//===- Transform.h - Arithmetic between a parameter and a comparison ------===//
 //
 // A threshold that is computed from a parameter and constants (type `derived`,
 // docs/reference/glossary.md#derived-comparison). The arithmetic is recorded,

@@ -1,4 +1,4 @@
-//===- BlindSpots.h - Where the analysis does not see on ------------------===//
+//===- BlindSpots.h - Places that the analysis cannot resolve -------------===//
 //
 // Lists every place that could not be resolved: the reader of a result must
 // know what it does not cover. There is one list. A new kind is a name in

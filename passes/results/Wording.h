@@ -1,4 +1,4 @@
-//===- Wording.h - What the program does, in the source's words -----------===//
+//===- Wording.h - Describes the program in words of its source -----------===//
 //
 // For people who read why a comparison is reported, and where the analysis has
 // blind spots: the names of functions and variables as the source has them, and

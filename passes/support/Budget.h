@@ -1,4 +1,4 @@
-//===- Budget.h - What an analysis may take of the machine ----------------===//
+//===- Budget.h - Limits on time and memory -------------------------------===//
 //
 // Does not depend on LLVM. The loops of an analysis ask whether the budget is
 // spent and, if so, end with what they have; LinkUnit then discards the

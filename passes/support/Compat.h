@@ -1,4 +1,4 @@
-//===- Compat.h - What differs between the LLVM releases we build with ----===//
+//===- Compat.h - Differences between versions of LLVM --------------------===//
 //
 // LLVM 19 and 22. Nothing outside this file asks for the version.
 //

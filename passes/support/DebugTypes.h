@@ -44,7 +44,7 @@ public:
   /// The type of field \p Index of \p Class, which has the layout \p Struct.
   const llvm::DIType *field(const llvm::DICompositeType *Class,
                             llvm::StructType *Struct, unsigned Index) const;
-  /// True where that field is const.
+  /// True if that field is const.
   bool isConst(const llvm::DICompositeType *Class, llvm::StructType *Struct,
                unsigned Index) const;
   /// The name of that field; empty for a base class.

@@ -1,4 +1,4 @@
-//===- Guard.h - A failure inside is only a failure of what runs inside ---===//
+//===- Guard.h - Survives a crash of the analysis -------------------------===//
 #ifndef TPC_GUARD_H
 #define TPC_GUARD_H
 

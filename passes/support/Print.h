@@ -1,4 +1,4 @@
-//===- Print.h - How the printers write a place ---------------------------===//
+//===- Print.h - Prints places --------------------------------------------===//
 #ifndef TPC_PRINT_H
 #define TPC_PRINT_H
 

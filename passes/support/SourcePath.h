@@ -1,4 +1,4 @@
-//===- SourcePath.h - Where a file of the source is -----------------------===//
+//===- SourcePath.h - Paths of source files -------------------------------===//
 #ifndef TPC_SOURCEPATH_H
 #define TPC_SOURCEPATH_H
 

@@ -1,4 +1,4 @@
-//===- RosLife.h - When roscpp may be touched -----------------------------===//
+//===- RosLife.h - When roscpp may be used --------------------------------===//
 //
 // This library may be called before ros::init, while roscpp starts, after
 // ros::shutdown, while the process ends and in a forked child. The singletons
