@@ -181,9 +181,8 @@ PreservedAnalyses LinkUnitPass::run(Module &M, ModuleAnalysisManager &AM) {
     if (std::string Why = insertReports(M, F.Reports); !Why.empty())
       F.Failure = std::move(Why);
   if (!F.Failure.empty()) {
-    warn(Opts,
-         F.Failure + (F.IsChanged ? "; this link unit gets no reports"
-                                  : "; this link unit is not changed"));
+    warn(Opts, F.Failure + (F.IsChanged ? "; this link unit gets no reports"
+                                        : "; this link unit is not changed"));
     F.Unit =
         describeFailure(Opts, F.Failure, F.Unit.Fields.getObject("counts"));
   } else if (json::Object *Counts = F.Unit.Fields.getObject("counts")) {
@@ -191,7 +190,8 @@ PreservedAnalyses LinkUnitPass::run(Module &M, ModuleAnalysisManager &AM) {
   }
   if (!Opts.StaticInfo.empty())
     if (Error E = writeJson(std::move(F.Unit), Opts.StaticInfo))
-      warn(Opts, "cannot write the static information: " + toString(std::move(E)));
+      warn(Opts,
+           "cannot write the static information: " + toString(std::move(E)));
   return PreservedAnalyses::none();
 }
 

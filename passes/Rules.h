@@ -82,8 +82,8 @@ struct ContainerMethod {
   bool Writes; ///< puts its arguments into the container
 };
 
-/// The IR operand of \p Call for the argument that the source counts as \p
-/// Number; null if there is none. \p R describes the called function.
+/// The IR operand of \p Call for the argument that the source counts as
+/// \p Number; null if there is none. \p R describes the called function.
 llvm::Value *argument(const llvm::CallBase &Call, const Rule &R,
                       std::optional<unsigned> Number);
 

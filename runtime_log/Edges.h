@@ -90,8 +90,8 @@ inline bool edgesAtOnce(Thread &T, const Site &S, bool Result, uint32_t Bits,
 /// Call once in each process, before the first evaluation.
 void prepareEdges();
 
-/// Begins a new period and passes the summaries of the old one to \p S. With \p
-/// All, also those of the period that has just begun; reports that arrive
+/// Begins a new period and passes the summaries of the old one to \p S. With
+/// \p All, also those of the period that has just begun; reports that arrive
 /// meanwhile go into the next summaries.
 void flushEdges(Sink &S, bool All);
 

@@ -168,7 +168,8 @@ Environment Environment::read(const fs::path &Self) {
   E.Lld = findProgram("ld.lld-" + clangVersion(), Self);
   if (E.Lld.empty())
     E.Missing = "ld.lld-" + clangVersion() +
-                " is not installed (apt-get install lld-" + clangVersion() + ")";
+                " is not installed (apt-get install lld-" + clangVersion() +
+                ")";
   for (const char *Part :
        {"lib/tpc/TpcDefer.so", "lib/tpc/TpcPasses.so", "lib/libtpc_log.so"})
     if (!isThere(E.Prefix / Part))

@@ -40,8 +40,9 @@ static int runTool(const std::string &Tool, const fs::path &Self,
   const std::string Program = findProgram(Name, Self);
   if (!Program.empty())
     return become(Program, Words);
-  say("error", Name + " is not installed (apt-get install llvm-" + clangVersion() +
-                   "); the system's " + Tool + " cannot read bitcode");
+  say("error", Name + " is not installed (apt-get install llvm-" +
+                   clangVersion() + "); the system's " + Tool +
+                   " cannot read bitcode");
   return 127;
 }
 
@@ -52,8 +53,9 @@ static int runCompiler(bool IsCxx, const fs::path &Self,
   const std::string Program = findProgram(Name, Self);
   if (Program.empty()) {
     const std::string Other = findProgram(IsCxx ? "c++" : "cc", Self);
-    const std::string Mend =
-        Name + " is not installed (apt-get install clang-" + clangVersion() + ")";
+    const std::string Mend = Name +
+                             " is not installed (apt-get install clang-" +
+                             clangVersion() + ")";
     if (Other.empty()) {
       say("error", Mend);
       return 127;

@@ -42,8 +42,8 @@ public:
   llvm::SmallVector<llvm::Function *, 4> targets(const llvm::CallBase &Call,
                                                  const VirtualCall &How);
 
-  /// Adds the functions in the vtables of the class with the mangled name \p
-  /// Name and of all derived classes.
+  /// Adds the functions in the vtables of the class with the mangled name
+  /// \p Name and of all derived classes.
   void addFunctions(llvm::StringRef Name,
                     llvm::SmallSetVector<const llvm::Function *, 4> &Out) const;
 

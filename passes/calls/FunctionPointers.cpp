@@ -19,16 +19,15 @@ namespace tpc {
 /// as unresolved.
 static cl::opt<unsigned> MaxVisited(
     "tpc-max-pointer-steps", cl::Hidden, cl::init(20000),
-    cl::desc(
-        "Places visited in search of the targets of one indirect call"));
+    cl::desc("Places visited in search of the targets of one indirect call"));
 /// If more targets are found, they are usually all functions of one type, which
 /// says nothing; the call counts as unresolved.
 static cl::opt<unsigned>
     MaxTargets("tpc-max-call-targets", cl::Hidden, cl::init(64),
                cl::desc("Functions that one indirect call may enter"));
 
-/// The cell of the scalar at the beginning of an object of type \p T at \p
-/// Where.
+/// The cell of the scalar at the beginning of an object of type \p T at
+/// \p Where.
 static std::pair<const void *, unsigned>
 enter(Type *T, std::pair<const void *, unsigned> Where) {
   while (auto *Struct = dyn_cast<StructType>(T)) {

@@ -14,8 +14,8 @@ namespace tpc {
 /// The values of phis that are constant on one path.
 using KnownMerges = SmallDenseMap<const PHINode *, const ConstantInt *, 4>;
 
-/// Adds to \p Known the values of the phis of \p BB if it is entered from \p
-/// From.
+/// Adds to \p Known the values of the phis of \p BB if it is entered from
+/// \p From.
 static void enterBlock(const BasicBlock *From, const BasicBlock &BB,
                        KnownMerges &Known) {
   SmallVector<std::pair<const PHINode *, const ConstantInt *>, 4> Now;

@@ -28,8 +28,8 @@ llvm::Value *conditionOf(const llvm::Instruction &Predicate);
 /// for; null if \p T is no such branch.
 const llvm::Constant *handlerAskedFor(const llvm::Instruction &T);
 
-/// The successor that the terminator of \p BB takes if \p BB is entered from \p
-/// From and the tested value is constant on this edge. Clang ends the
+/// The successor that the terminator of \p BB takes if \p BB is entered from
+/// \p From and the tested value is constant on this edge. Clang ends the
 /// conditions of loops and variables, and scopes with cleanups, in such a
 /// block; nested scopes end in several of them. Null if both successors are
 /// possible.

@@ -16,9 +16,9 @@ AnalysisKey Throws::Key;
 
 /// Each type is propagated through all callers. Beyond the limit a call counts
 /// as throwing any type.
-static cl::opt<unsigned>
-    MaxTypes("tpc-max-thrown-types", cl::Hidden, cl::init(4),
-             cl::desc("Types of exceptions that are distinguished at one call"));
+static cl::opt<unsigned> MaxTypes(
+    "tpc-max-thrown-types", cl::Hidden, cl::init(4),
+    cl::desc("Types of exceptions that are distinguished at one call"));
 
 /// Exception classes have few bases; a damaged table might contain a cycle.
 static cl::opt<unsigned> MaxBases(

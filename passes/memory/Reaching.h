@@ -63,8 +63,8 @@ public:
   Instructions replacingFrom(const llvm::Function &F, const llvm::Value *Base);
 
   /// True if the value that \p Write puts into \p Written can still be there
-  /// when \p Read reads it. \p Read names the variable \p Read; if it is none,
-  /// it reads through a pointer that may lead to another object.
+  /// when \p At reads it. \p Read is the variable that \p At names; none if
+  /// \p At reads through a pointer that may lead to another object.
   bool reaches(const llvm::Instruction &Write, std::optional<Variable> Written,
                const llvm::Instruction &At, std::optional<Variable> Read);
 

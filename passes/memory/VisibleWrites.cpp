@@ -177,8 +177,8 @@ SmallVector<LoadInst *, 8> VisibleWrites::usesOf(const Instruction &Write,
 // Whole objects
 //===----------------------------------------------------------------------===//
 
-/// The parts of the object at \p L, which \p At gets by \p Pointer, that \p
-/// At's function replaces.
+/// The parts of the object at \p L, which \p At gets by \p Pointer, that
+/// \p At's function replaces.
 SmallVector<VisibleWrites::Part, 4>
 VisibleWrites::replacedParts(const Location &L, const Instruction &At,
                              const Value *Pointer) {

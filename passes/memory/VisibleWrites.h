@@ -33,8 +33,8 @@ public:
   llvm::SmallVector<llvm::Instruction *, 8>
   writesOf(const Location &L, const llvm::Instruction &At,
            const llvm::Value *Pointer);
-  /// The writes into the object at \p L that \p At, which gets a pointer \p
-  /// Pointer to it, can see.
+  /// The writes into the object at \p L that \p At, which gets a pointer
+  /// \p Pointer to it, can see.
   llvm::SmallVector<llvm::Instruction *, 8>
   writesInto(const Location &L, const llvm::Instruction &At,
              const llvm::Value *Pointer);

@@ -19,7 +19,8 @@ namespace tpc {
 /// depth, a value that leaves a function is followed to all calls of it.
 static cl::opt<unsigned> MaxCallDepth(
     "tpc-max-call-depth", cl::Hidden, cl::init(8),
-    cl::desc("Nested calls that are matched while a value is followed forward"));
+    cl::desc(
+        "Nested calls that are matched while a value is followed forward"));
 
 const CallPath *Follower::enterCall(const CallBase *Call,
                                     const CallPath *Outer) {
@@ -35,7 +36,8 @@ const CallPath *Follower::enterCall(const CallBase *Call,
 /// only.
 static cl::opt<unsigned> MaxOrigins(
     "tpc-max-origins", cl::Hidden, cl::init(4096),
-    cl::desc("Origins of merged values that are distinguished for one parameter"));
+    cl::desc(
+        "Origins of merged values that are distinguished for one parameter"));
 
 /// \p Via is the instruction that passes the value on to S.V; none if S.V
 /// itself computes it.

@@ -127,7 +127,7 @@ private:
   ParameterUsage Usage;
   Worklist Work;
   unsigned ReadAtHand = 0;
-  bool IsOutcome = false; ///< a derived value is followed, not the value itself
+  bool IsOutcome = false;    ///< an outcome is followed, not the value itself
   unsigned Here = Hop::None; ///< the hop that led to the current state
   /// The simplest arithmetic with which a value was reached, for each call.
   llvm::DenseMap<std::pair<const llvm::Value *, const llvm::CallBase *>,

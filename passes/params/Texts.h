@@ -47,8 +47,8 @@ public:
         std::optional<MemoryView> Known)
       : Rules(Rules), Calls(Calls), Memory(Known) {}
 
-  /// The text of the std::string or char array that \p Pointer leads to when \p
-  /// At runs.
+  /// The text of the std::string or char array that \p Pointer leads to when
+  /// \p At runs.
   std::string textAt(const llvm::Value *Pointer, const llvm::Instruction &At);
 
   /// The name that \p Call, described by \p Row, passes, after the namespace of

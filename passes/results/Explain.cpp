@@ -234,8 +234,8 @@ Explainer::Steps Explainer::backward(const Comparison &C) {
   return Out;
 }
 
-/// Keeps the first and the last steps of \p Path if there are more than \p
-/// Most.
+/// Keeps the first and the last steps of \p Path if there are more than
+/// \p Most.
 static void shorten(std::vector<PathStep> &Path, size_t Most) {
   if (Path.size() <= Most)
     return;

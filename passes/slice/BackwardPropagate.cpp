@@ -141,8 +141,8 @@ void Slicer::enterDecider(Instruction *Predicate, Why Because) {
   if (New)
     It->second = {Round, Current, addStep(Predicate, Because)};
   // For a check of the exception's type, the instructions that throw it matter,
-  // not the result of the landing pad. And whether nobody needs an object any
-  // more is not a decision that releasing it is meant to make.
+  // not the result of the landing pad. A reference count is no decision of the
+  // code that releases an object.
   bool IsGiven = !handlerAskedFor(*Predicate) && !isCounting(*Predicate);
   enter(Predicate, IsGiven ? Gives : Runs, Because);
 }
@@ -198,8 +198,8 @@ void Slicer::enterPointer(const Value *V) {
     enter(const_cast<Instruction *>(cast<Instruction>(V)), Gives, Why::Gives);
 }
 
-/// The memory at \p Pointer, a scalar or an array of scalars, matters where \p
-/// At reads it.
+/// The memory at \p Pointer, a scalar or an array of scalars, matters where
+/// \p At reads it.
 void Slicer::enterMemory(const Value *Pointer, const Instruction &At) {
   Locations Read = Pointers.resolve(Pointer, true);
   for (Location &L : Read)

@@ -31,8 +31,8 @@ public:
   /// The type of the object that \p Pointer points to; null if it is not known.
   const llvm::DIType *pointee(const llvm::Value *Pointer);
 
-  /// \p T, or the base class at its beginning, whichever LLVM lays out as \p
-  /// Struct; null if neither is.
+  /// \p T, or the base class at its beginning, whichever LLVM lays out as
+  /// \p Struct; null if neither is.
   const llvm::DICompositeType *asStruct(const llvm::DIType *T,
                                         llvm::StructType *Struct) const;
 
