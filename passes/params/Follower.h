@@ -100,7 +100,8 @@ private:
   void stopAt(ValueEnd::KindTy Kind, llvm::Instruction *At);
   /// Nobody asks for the path of a value that is never compared.
   void forgetHops(size_t From) {
-    Usage.Hops.erase(Usage.Hops.begin() + From, Usage.Hops.end());
+    Usage.Hops.erase(Usage.Hops.begin() + static_cast<ptrdiff_t>(From),
+                     Usage.Hops.end());
   }
   void push(State S, llvm::Instruction *Via = nullptr);
   const CallPath *enterCall(const llvm::CallBase *Call, const CallPath *Outer);

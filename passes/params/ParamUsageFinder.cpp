@@ -102,15 +102,13 @@ SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome,
       auto *I = dyn_cast<Instruction>(U.getUser());
       if (!I)
         continue;
-      if (!S.In && decidesBy(*I, U))
+      if (!S.In && decidesBy(*I, U)) {
         Found.push_back({I, S.Direct, S.Way});
-      else if (followRepacked(S, U))
         continue;
-      else if (S.In && !carry(S, U))
-        stopAt(ValueEnd::Outcome, I);
-      else if (S.In)
+      }
+      if (followRepacked(S, U))
         continue;
-      else if (isLogical(*I) || isa<ICmpInst>(I))
+      if (!S.In && (isLogical(*I) || isa<ICmpInst>(I)))
         push({I, {}, S.Path, S.Direct});
       else if (!carry(S, U))
         stopAt(ValueEnd::Outcome, I);

@@ -15,7 +15,7 @@ namespace tpc {
 
 std::string shortest(double X) {
   char Buffer[32];
-  auto End = std::to_chars(Buffer, Buffer + sizeof(Buffer), X).ptr;
+  auto *End = std::to_chars(Buffer, Buffer + sizeof(Buffer), X).ptr;
   return std::string(Buffer, End);
 }
 

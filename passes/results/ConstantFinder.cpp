@@ -150,7 +150,7 @@ void ConstantFinder::addComparison(CmpInst &Compare, Instruction &Predicate,
   if (!numberOf(Compare.getOperand(Threshold)) || plainNumber(Other) ||
       isTruth(Other) || asksForNonZero(Compare) || !comparesValues(Compare))
     return;
-  auto Known = Found.find(&Compare);
+  auto *Known = Found.find(&Compare);
   if (Known != Found.end() && Known->second.Slice.Distance <= E.Distance)
     return;
   const DILocation *Place = Where(Compare);
