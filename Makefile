@@ -1,4 +1,4 @@
-.PHONY: setup demo demo-water demo-navigation check test test-llvm22 format lint fuzz bench coverage help
+.PHONY: setup demo demo-water demo-navigation check test test-llvm22 format lint tidy fuzz bench coverage help
 PYTHON = .venv/bin/python
 
 help:         ## this list
@@ -37,6 +37,10 @@ format:       ## the sources in the form that lint asks for
 lint:         ## what CI asks of the sources
 	@tools/setup test
 	tools/lint
+
+tidy:         ## clang-tidy on the C++ sources: half an hour
+	@tools/setup test
+	tools/tidy
 
 coverage:     ## how much of the Python side its tests run
 	@tools/setup test

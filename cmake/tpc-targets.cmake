@@ -1,22 +1,22 @@
-# Part of tpc.cmake, which includes it: what is worked out for each target when all
-# of them are known, at the end of the top CMakeLists.txt.
+# Part of tpc.cmake, which includes it: sets up each target when all of them are known, at the end
+# of the top CMakeLists.txt.
 #
 # tpc.cmake's link options read these properties of a target:
 #
-#   _TPC_OFF  why it is neither analysed nor reporting; empty where it is
+#   _TPC_OFF  why it is not analysed and gets no reports; empty if it is
 #   _TPC_PACKAGE, _TPC_SOURCE_ROOT, _TPC_EXCLUDED, _TPC_STATIC_INFO
 #
-# Every link unit is listed in <build folder>/tpc/targets.tsv, with its file and the
-# reason why it is left out, if it is: so that nothing is missing silently.
+# Every link unit is listed in <build folder>/tpc/targets.tsv with its file and, if it is left out,
+# the reason, so that nothing is missing silently.
 #
-# The functions run in the scope of the top CMakeLists.txt, which need not have read
-# this file: they know no variables but those of the folders that they ask.
+# The functions run in the scope of the top CMakeLists.txt, which may not have read this file: they
+# use only the variables of the folders that they query.
 
 function(_tpc_finish)
   set_property(GLOBAL PROPERTY _tpc_listed "")
   _tpc_finish_folder("${CMAKE_SOURCE_DIR}")
   get_property(listed GLOBAL PROPERTY _tpc_listed)
-  # Of several configurations the first one's files stand for all, as in CMake's answer.
+  # With several configurations the files of the first one represent all, as in CMake's answer.
   set(condition 1)
   get_property(several GLOBAL PROPERTY GENERATOR_IS_MULTI_CONFIG)
   if(several)
@@ -25,14 +25,14 @@ function(_tpc_finish)
   endif()
   file(GENERATE OUTPUT "${CMAKE_BINARY_DIR}/tpc/targets.tsv" CONTENT "${listed}"
     CONDITION "${condition}")
-  # CMake answers in the configuration after this one.
+  # CMake answers at the next configuration.
   if(NOT EXISTS "${CMAKE_BINARY_DIR}/.cmake/api/v1/query/codemodel-v2")
     file(WRITE "${CMAKE_BINARY_DIR}/.cmake/api/v1/query/codemodel-v2" "")
   endif()
   get_property(lost GLOBAL PROPERTY _tpc_lost)
   if(lost)
     string(REPLACE ";" ", " lost "${lost}")
-    message(WARNING "TPC: lost in what is built with TPC: ${lost}; keep it with -DTPC_DISABLE=ON")
+    message(WARNING "TPC: has no effect in a build with TPC: ${lost}; -DTPC_DISABLE=ON keeps it")
   endif()
   get_property(plain GLOBAL PROPERTY _tpc_plain)
   if(plain)
@@ -76,18 +76,18 @@ function(_tpc_finish_folder folder)
   endforeach()
 endfunction()
 
-# Sets package, root, binary and excluded to what folder's targets belong to: the
-# nearest folder above with a package.xml, or else the top of the project.
+# Sets package, root, binary and excluded to what the targets of a folder belong to: the nearest
+# folder above with a package.xml; otherwise the top of the project.
 macro(_tpc_find_package folder)
   set(root "${folder}")
   while(NOT EXISTS "${root}/package.xml" AND NOT root STREQUAL CMAKE_SOURCE_DIR)
     get_directory_property(root DIRECTORY "${root}" PARENT_DIRECTORY)
   endwhile()
   get_directory_property(package DIRECTORY "${root}" DEFINITION PROJECT_NAME)
-  # Plain CMake packages are free to be called otherwise, two of them alike; keys must not be.
+  # Plain CMake packages may have any name, and two may have the same; keys must differ.
   _tpc_name_in_manifest("${root}/package.xml" package)
   get_directory_property(binary DIRECTORY "${root}" BINARY_DIR)
-  # What is generated is nobody's source, unless it is built where the sources are.
+  # Generated code is not user code, unless the build folder is the source folder.
   set(excluded "${CMAKE_BINARY_DIR}")
   string(FIND "${root}/" "${CMAKE_BINARY_DIR}/" at)
   if(at EQUAL 0)
@@ -95,13 +95,13 @@ macro(_tpc_find_package folder)
   endif()
 endmacro()
 
-# Sets `result` to the name in a package.xml, and leaves it where there is none.
+# Sets `result` to the name in a package.xml; does not change it if there is none.
 function(_tpc_name_in_manifest path result)
   if(NOT EXISTS "${path}")
     return()
   endif()
   file(READ "${path}" text)
-  # By hand: CMake's regular expressions need a stack as deep as a comment is long.
+  # Not with a regular expression: CMake's need a stack as deep as a comment is long.
   string(FIND "${text}" "<!--" begin)
   while(NOT begin EQUAL -1)
     string(SUBSTRING "${text}" 0 ${begin} before)
@@ -120,7 +120,7 @@ function(_tpc_name_in_manifest path result)
   endif()
 endfunction()
 
-# Sets `patterns` to those of the sources whose compile rule is not ours.
+# Sets `patterns` to those of the sources whose compile rule is not that of TPC.
 function(_tpc_find_plain_sources folder patterns)
   get_property(enabled GLOBAL PROPERTY ENABLED_LANGUAGES)
   get_directory_property(defer DIRECTORY "${folder}" DEFINITION _tpc_defer)
@@ -149,8 +149,8 @@ function(_tpc_has_plain_source target patterns result)
   endforeach()
 endfunction()
 
-# Notes a flag of the target that would be lost. Flags in generator expressions and in
-# the interface of another target are not known here.
+# Records a flag of the target that would be lost. Flags in generator expressions and in the
+# interface of another target are not found here.
 function(_tpc_find_lost_flag folder target)
   get_property(all TARGET "${target}" PROPERTY COMPILE_FLAGS)
   get_property(options TARGET "${target}" PROPERTY COMPILE_OPTIONS)
@@ -166,8 +166,8 @@ function(_tpc_find_lost_flag folder target)
   endif()
 endfunction()
 
-# Sets the properties of an executable or library, has it linked again when the passes,
-# the log library or the rules have changed, and lists it.
+# Sets the properties of an executable or library, lists it, and makes it depend on the passes, the
+# log library and the rules.
 function(_tpc_finish_link_unit folder target obstacle is_plain)
   _tpc_find_package("${folder}")
   set(left_out "${obstacle}")
@@ -187,7 +187,7 @@ function(_tpc_finish_link_unit folder target obstacle is_plain)
     endforeach()
   endif()
   if(left_out)
-    # What an earlier build found says nothing of what is built now.
+    # The findings of an earlier build do not apply to this one.
     file(REMOVE "${file}")
   elseif(is_plain)
     set(left_out "the language was enabled after project(), or its compile rule was replaced")
@@ -196,8 +196,7 @@ function(_tpc_finish_link_unit folder target obstacle is_plain)
     "${package}\t${target}\t$<TARGET_FILE:${target}>\t${file}\t${left_out}\n")
 endfunction()
 
-# Sets `reason` to why a target gets no reports in a package that does; empty where it
-# gets them.
+# Sets `reason` to why a target gets no reports although its package does; empty if it gets them.
 function(_tpc_find_reason_to_leave_out folder target reason)
   set(${reason} "" PARENT_SCOPE)
   get_target_property(wish "${target}" TPC_INSTRUMENT)
@@ -211,12 +210,12 @@ function(_tpc_find_reason_to_leave_out folder target reason)
   if(is_static)
     set(${reason} "it is linked with -static, and reports need a shared library" PARENT_SCOPE)
   endif()
-  # A report from the code that carries reports would bring on the next one, without end.
+  # A report from the code that carries reports would cause another report, without end.
   if(package MATCHES "^(cpp_common|rosconsole|roscpp|roscpp_serialization|rosout|rostime|xmlrpcpp)$")
-    set(${reason} "its code carries the reports (its property TPC_INSTRUMENT has it analysed, too)"
+    set(${reason} "its code carries the reports (set its property TPC_INSTRUMENT to analyse it too)"
       PARENT_SCOPE)
   endif()
-  # Libraries that only a test program is linked with.
+  # Libraries that only test programs link.
   string(CONCAT test_library
     "^(GTest::)?(gtest|gmock)(_main)?$|/lib(gtest|gmock)(_main)?\\.|^Catch2(::|$)|^doctest::"
     "|boost_unit_test_framework|Boost::(unit_test_framework|prg_exec_monitor)|^rosunit$")
@@ -228,7 +227,7 @@ function(_tpc_find_reason_to_leave_out folder target reason)
   endif()
   get_directory_property(with_tests DIRECTORY "${folder}" DEFINITION TPC_TESTS)
   if(NOT with_tests AND (libraries OR target IN_LIST tests))
-    set(${reason} "it is a test (TPC_TESTS=ON has tests analysed, too)" PARENT_SCOPE)
+    set(${reason} "it is a test (set TPC_TESTS=ON to analyse tests too)" PARENT_SCOPE)
   endif()
 endfunction()
 

@@ -1,27 +1,26 @@
-# Builds a package with the passes of TPC. One file with three entrances:
+# Builds a package with the passes of TPC. There are three ways to use this file:
 #
 #   -DCMAKE_TOOLCHAIN_FILE=.../tpc.cmake   what `pytpc build` does
 #   -DCMAKE_PROJECT_INCLUDE=.../tpc.cmake  with the compilers chosen elsewhere
 #   include(.../tpc.cmake)                 at the top of a CMakeLists.txt, as
 #                                          `python -m pytpc.workspace.patch` puts it there
 #
-# Before project() it chooses the compilers; after it, it adds the flags to the
-# rules by which CMake compiles and links. What it cannot do it says in one
-# warning, and leaves the build as it would have been.
+# Before project() it chooses the compilers. After project() it adds flags to the rules by which
+# CMake compiles and links. If it cannot do that, it prints one warning and does not change the
+# build.
 #
 #   TPC_CLANG_VERSION  release of clang, lld and LLVM (19)
 #   TPC_RULES          the user's own file of rules
 #   TPC_PROFILE        thesis or default
 #   TPC_MAX_SECONDS    processor time that the analysis of a link unit may take (120)
 #   TPC_MAX_MEMORY     MiB that it may take (4096)
-#   TPC_CONSTANTS      report comparisons with constants of the source, too
-#   TPC_TESTS          have test programs analysed and reporting, too
-#   TPC_DISABLE        leave this package alone
-#   TPC_LEFT_ALONE     a list of folders of packages that are left alone, compiler and all
+#   TPC_CONSTANTS      also report comparisons with constants in the source
+#   TPC_TESTS          also analyse test programs, and insert reports into them
+#   TPC_DISABLE        do not change this package
+#   TPC_LEFT_ALONE     folders of packages that are not changed at all, not even their compiler
 #
-# A target's property TPC_INSTRUMENT, set to OFF, keeps the reports out of it; set to
-# ON it has them put into a test program. What is worked out for each target stands
-# in tpc-targets.cmake.
+# The property TPC_INSTRUMENT of a target keeps reports out of it if it is OFF, and inserts them
+# into a test program if it is ON. tpc-targets.cmake sets up the targets.
 
 cmake_policy(PUSH)
 cmake_policy(VERSION 3.16)
@@ -37,8 +36,8 @@ set(_tpc_flags_file "${_tpc_prefix}/share/tpc/flags")
 if(NOT TPC_CLANG_VERSION)
   set(TPC_CLANG_VERSION 19)
 endif()
-# Sets `text` to the flags of one kind in share/tpc/flags, as a shell reads them. What they
-# are for is said there.
+# Sets `text` to the flags of one kind in share/tpc/flags, quoted for a shell. That file says what
+# they are for.
 function(_tpc_read_flags kind text)
   set(read "")
   if(EXISTS "${_tpc_flags_file}")
@@ -69,10 +68,10 @@ _tpc_read_flags(compile _tpc_compile_flags)
 _tpc_read_flags(accept _tpc_accept_flags)
 string(APPEND _tpc_compile_flags "${_tpc_accept_flags}")
 
-# Has what is linked from these languages linked by lld, the probes included:
-# a static library of a package below holds bitcode. It stands in the rules
-# because CMAKE_EXE_LINKER_FLAGS is for all languages, and gfortran and nvcc do
-# not know these flags; and because packages overwrite that variable.
+# Makes lld link everything in these languages, including CMake's checks: a static library of
+# another package may hold bitcode. The flags are put into the rules because CMAKE_EXE_LINKER_FLAGS
+# applies to all languages, and gfortran and nvcc reject these flags; and because packages overwrite
+# that variable.
 macro(_tpc_link_with_lld)
   _tpc_read_flags(link _tpc_link_flags)
   foreach(_tpc_language ${ARGN})
@@ -80,7 +79,7 @@ macro(_tpc_link_with_lld)
   endforeach()
 endmacro()
 
-# Adds flags to the link rules of a language, behind those of the target, in probes too.
+# Adds flags to the link rules of a language, after those of the target; also in CMake's checks.
 macro(_tpc_add_link_flags language flags)
   foreach(_tpc_rule LINK_EXECUTABLE CREATE_SHARED_LIBRARY CREATE_SHARED_MODULE)
     string(REPLACE "<LINK_FLAGS>" "<LINK_FLAGS> ${flags}"
@@ -89,14 +88,14 @@ macro(_tpc_add_link_flags language flags)
   list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES CMAKE_${language}_LINK_EXECUTABLE)
 endmacro()
 
-# Adds flags to the compile rule of a language, behind those of the target.
+# Adds flags to the compile rule of a language, after those of the target.
 macro(_tpc_add_compile_flags language flags)
   string(REPLACE "<FLAGS>" "<FLAGS> ${flags}"
     CMAKE_${language}_COMPILE_OBJECT "${CMAKE_${language}_COMPILE_OBJECT}")
 endmacro()
 
-# In a probe: with -Werror among its flags, one that only gcc knows or that clang has
-# no use for would make every answer a no.
+# For CMake's checks: with -Werror, a flag that only gcc knows or that clang does not need would
+# make every check fail.
 macro(_tpc_tolerate_flags_in_probes)
   foreach(_tpc_language C CXX)
     if(_tpc_instead_of_${_tpc_language})
@@ -108,10 +107,10 @@ macro(_tpc_tolerate_flags_in_probes)
   endforeach()
 endmacro()
 
-# For assembler sources: to clang the flags for C and C++ that it gets are of no use, of
-# which it warns and gcc does not.
+# For assembler sources: clang warns about flags for C and C++ that have no effect there; gcc does
+# not.
 macro(_tpc_tolerate_flags_of_assembler)
-  # Where it is enabled later it is the compiler for C, or else that for C++.
+  # If assembler is enabled later, it uses the compiler for C or, without one, that for C++.
   set(_tpc_assembler "${CMAKE_ASM_COMPILER}")
   foreach(_tpc_compiler CMAKE_C_COMPILER CMAKE_CXX_COMPILER)
     if(NOT _tpc_assembler)
@@ -129,10 +128,10 @@ macro(_tpc_tolerate_flags_of_assembler)
   endif()
 endmacro()
 
-# Has clang compile and link, whatever CMAKE_<LANG>_COMPILER becomes after project(), and
-# where CMake found gcc before this file was read: in a build folder of before, or in a
-# CMakeLists.txt above, as catkin_make's. There the package is told that it is clang, and its
-# probes ask clang: flags that only gcc knows end clang's work.
+# Makes clang compile and link, whatever CMAKE_<LANG>_COMPILER becomes after project(), and also if
+# CMake found gcc before it read this file: in an older build folder, or in a CMakeLists.txt above,
+# like that of catkin_make. The package is then told that the compiler is clang, and its checks run
+# clang, because clang rejects flags that only gcc knows.
 macro(_tpc_replace_compilers)
   set(_tpc_instead_of_C "${TPC_CLANG}")
   set(_tpc_instead_of_CXX "${TPC_CLANGXX}")
@@ -146,7 +145,7 @@ macro(_tpc_replace_compilers)
       set(CMAKE_RANLIB "${TPC_RANLIB}")
       set(CMAKE_${_tpc_language}_COMPILER_AR "${TPC_AR}")
       set(CMAKE_${_tpc_language}_COMPILER_RANLIB "${TPC_RANLIB}")
-      # Every probe is a project of this name.
+      # Every check is a project of this name.
       set(CMAKE_PROJECT_CMAKE_TRY_COMPILE_INCLUDE "${_tpc_file}")
       list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES
         CMAKE_PROJECT_CMAKE_TRY_COMPILE_INCLUDE _tpc_instead_of_${_tpc_language})
@@ -155,14 +154,14 @@ macro(_tpc_replace_compilers)
   unset(CMAKE_COMPILER_IS_GNUCC)
 endmacro()
 
-# Has the rules of a language say clang where they say the language's compiler.
+# Puts clang in place of the language's compiler in the rules of a language.
 macro(_tpc_name_compiler language)
-  # What CMake would add to the compiler's name for another machine is kept.
+  # Keeps what CMake adds to the name of the compiler for another machine.
   if(NOT CMAKE_SYSROOT AND NOT CMAKE_${language}_COMPILER_TARGET
       AND NOT CMAKE_${language}_COMPILER_ARG1)
     foreach(_tpc_rule COMPILE_OBJECT LINK_EXECUTABLE CREATE_SHARED_LIBRARY CREATE_SHARED_MODULE)
       set(_tpc_compiler "\"${_tpc_instead_of_${language}}\"")
-      # A compiler's launcher CMake puts before the rule, a linker's before the name.
+      # CMake puts the launcher of a compiler before the rule, and that of a linker before the name.
       if(NOT _tpc_rule STREQUAL "COMPILE_OBJECT" AND CMAKE_${language}_LINKER_LAUNCHER)
         string(REPLACE ";" "\" \"" _tpc_launcher "${CMAKE_${language}_LINKER_LAUNCHER}")
         string(PREPEND _tpc_compiler "\"${_tpc_launcher}\" ")
@@ -173,9 +172,8 @@ macro(_tpc_name_compiler language)
   endif()
 endmacro()
 
-# Takes -ffat-lto-objects, which Linux distributions have among their flags, out of those
-# for all targets: native code would stand beside the bitcode, and be what is linked. No
-# flag behind it undoes it.
+# Removes -ffat-lto-objects, which Linux distributions put among their flags, from those for all
+# targets: otherwise the native code beside the bitcode would be linked. No later flag undoes it.
 macro(_tpc_want_bitcode_alone)
   foreach(_tpc_language C CXX)
     string(REPLACE "-ffat-lto-objects" "" CMAKE_${_tpc_language}_FLAGS
@@ -183,9 +181,8 @@ macro(_tpc_want_bitcode_alone)
   endforeach()
 endmacro()
 
-# Has a package that another compiler builds link the static libraries of the others, which
-# hold bitcode: GNU's linkers read it by a plugin of LLVM's. What they make of it reports
-# nothing.
+# Lets a package built by another compiler link the static libraries of other packages, which hold
+# bitcode: GNU's linkers read it with a plugin of LLVM. The result contains no reports.
 macro(_tpc_link_bitcode)
   find_file(TPC_GOLD_PLUGIN LLVMgold.so PATHS "/usr/lib/llvm-${TPC_CLANG_VERSION}/lib"
     NO_DEFAULT_PATH)
@@ -198,8 +195,8 @@ macro(_tpc_link_bitcode)
   endif()
 endmacro()
 
-# Gives a language that the package enables later, by enable_language(), the
-# rules of the other one: CMake keeps rules that are there.
+# Gives a language that the package enables later, by enable_language(), the rules of the other one:
+# CMake keeps existing rules.
 macro(_tpc_prepare_language language other)
   foreach(_tpc_rule COMPILE_OBJECT LINK_EXECUTABLE CREATE_SHARED_LIBRARY CREATE_SHARED_MODULE)
     string(REGEX REPLACE "(<[A-Z_]+_)${other}_" "\\1${language}_"
@@ -207,8 +204,8 @@ macro(_tpc_prepare_language language other)
   endforeach()
 endmacro()
 
-# Adds the flags to the rules of this directory and those below. Nothing of them
-# is in a target, so nothing is exported or inherited.
+# Adds the flags to the rules of this directory and those below. Targets are not changed, so nothing
+# is exported or inherited.
 macro(_tpc_instrument)
   if(_tpc_languages STREQUAL "C" AND TPC_CLANGXX AND CMAKE_CXX_COMPILER STREQUAL TPC_CLANGXX)
     _tpc_prepare_language(CXX C)
@@ -221,17 +218,17 @@ macro(_tpc_instrument)
   _tpc_want_bitcode_alone()
   _tpc_link_with_lld(${_tpc_languages})
   foreach(_tpc_language IN LISTS _tpc_languages)
-    # Behind the flags of the target, whose -fno-lto, -flto=thin or -Werror
-    # would break the build or undo ours.
+    # After the flags of the target, whose -fno-lto, -flto=thin or -Werror would break the build or
+    # undo those of TPC.
     _tpc_add_compile_flags(${_tpc_language} "${_tpc_compile_flags}")
   endforeach()
   _tpc_tolerate_flags_of_assembler()
-  # What was made without the plugin, or by another one, is compiled again, and not taken from a
-  # cache: make looks at the flags and definitions of a target, and not at its rules.
+  # Objects made without the plugin, or with another version of it, are compiled again and not taken
+  # from a cache: make compares the flags and definitions of a target, but not its rules.
   add_compile_definitions("TPC_DEFER=0x${_tpc_defer_hash}")
   string(REPLACE ";" "," _tpc_linked "${_tpc_languages}")
-  # In every program and library, because the optimisation that the compiler left
-  # out is the plugin's to make up for.
+  # In every program and library, because the plugin must run the optimisation that the compiler
+  # left out.
   _tpc_read_flags(linker _tpc_linker_flags)
   _tpc_add_link_options("${_tpc_linker_flags}" "")
   _tpc_add_plugin_option("-tpc-analyse=false" "$<TARGET_PROPERTY:_TPC_OFF>")
@@ -260,8 +257,8 @@ macro(_tpc_instrument)
   _tpc_add_link_options("${_tpc_last_flags}" "${_tpc_on}")
 endmacro()
 
-# Has the linker given options, where `condition` (a generator expression; always where
-# it is empty) is 1. A comma in them is no separator, and a space in quotes neither.
+# Passes options to the linker if `condition` (a generator expression; empty: always) is 1. Commas
+# do not separate them, and neither do spaces inside quotes.
 function(_tpc_add_link_options options condition)
   set(linked "$<LINK_LANGUAGE:${_tpc_linked}>")
   if(condition)
@@ -271,12 +268,12 @@ function(_tpc_add_link_options options condition)
   add_link_options("$<${linked}:LINKER:SHELL:${options}>")
 endfunction()
 
-# The same for an option of LLVM's or of its plugins.
+# The same for an option of LLVM or of its plugins.
 function(_tpc_add_plugin_option option condition)
   _tpc_add_link_options("-mllvm \"${option}\"" "${condition}")
 endfunction()
 
-# After project(): sees to the languages that it has enabled.
+# After project(): handles the languages that it has enabled.
 macro(_tpc_enter_project)
   set(_tpc_languages C CXX)
   foreach(_tpc_language C CXX)
@@ -284,7 +281,7 @@ macro(_tpc_enter_project)
       list(REMOVE_ITEM _tpc_languages ${_tpc_language})
     endif()
   endforeach()
-  # In a patched package below another project() its own one is yet to come.
+  # In a patched package below another project(), the package's own project() comes later.
   set(_tpc_name "${PROJECT_NAME}")
   if(NOT PROJECT_SOURCE_DIR STREQUAL CMAKE_CURRENT_SOURCE_DIR)
     get_filename_component(_tpc_name "${CMAKE_CURRENT_SOURCE_DIR}" NAME)
@@ -302,8 +299,8 @@ macro(_tpc_enter_project)
     if(NOT TPC_DISABLE)
       message(WARNING "TPC: ${_tpc_name} is built without instrumentation: ${_tpc_obstacle}")
     endif()
-    # It may use the libraries of instrumented packages all the same, if the
-    # compilers are those that we chose; and what they warn of ends no build.
+    # It may still use the libraries of instrumented packages if TPC chose its compilers; their
+    # warnings must not end the build.
     foreach(_tpc_language IN LISTS _tpc_languages)
       if(CMAKE_${_tpc_language}_COMPILER STREQUAL "${TPC_CLANG}"
           OR CMAKE_${_tpc_language}_COMPILER STREQUAL "${TPC_CLANGXX}")
@@ -326,8 +323,8 @@ macro(_tpc_enter_project)
   endif()
 endmacro()
 
-# One file only can be included after project(): ours, which then includes the one that was
-# asked for.
+# Only one file can be included after project(). TPC includes its own, which then includes the file
+# that the user asked for.
 macro(_tpc_be_next_include)
   if(NOT CMAKE_PROJECT_INCLUDE STREQUAL _tpc_file)
     set(_tpc_next_include "${CMAKE_PROJECT_INCLUDE}")
@@ -339,11 +336,11 @@ get_property(_tpc_probe GLOBAL PROPERTY IN_TRY_COMPILE)
 get_property(_tpc_enabled GLOBAL PROPERTY ENABLED_LANGUAGES)
 if("${CMAKE_SOURCE_DIR}" IN_LIST TPC_LEFT_ALONE)
   set(_tpc_left_alone TRUE)
-  # The probes of the package, too, which are projects of their own.
+  # Also the package's checks, which are projects of their own.
   list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES _tpc_left_alone)
 endif()
 if(_tpc_left_alone)
-  # Not even another compiler.
+  # Not even with another compiler.
   if(NOT _tpc_probe)
     if(NOT _tpc_enabled)
       _tpc_be_next_include()
@@ -356,7 +353,7 @@ if(_tpc_left_alone)
     endif()
   endif()
 elseif(_tpc_probe)
-  # Probes of the compiler are nobody's program; they only need the compiler.
+  # CMake's checks of the compiler belong to no program; they only need the compiler.
   if(NOT _tpc_enabled)
     _tpc_choose_compilers()
   else()
@@ -367,7 +364,7 @@ elseif(NOT _tpc_enabled)
   _tpc_be_next_include()
   list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES CMAKE_PROJECT_INCLUDE)
 elseif(NOT _tpc_done)
-  # Otherwise a project() inside the package, which has inherited the rules.
+  # Otherwise this is a project() inside the package, which has inherited the rules.
   _tpc_enter_project()
   if(_tpc_next_include)
     include("${_tpc_next_include}")

@@ -50,18 +50,20 @@ void registerAnalyses(ModuleAnalysisManager &AM) {
   AM.registerPass([] { return GatherResults(); });
 }
 
-/// What the analysis of a unit comes to.
+/// The result of analysing a link unit.
 struct Findings {
   UnitInfo Unit;
   std::vector<Report> Reports;
   unsigned NotInstrumented = 0;
   std::string Failure;
-  bool IsChanged = false; ///< the unit, by what reports need
+  bool IsChanged =
+      false; ///< the functions that reports need were copied or inlined
 };
 
 namespace {
-/// A manager of its own for each copy that is analysed: the link's manager
-/// knows the user's module, which stays as it is, and outlives the copies.
+/// The analysis manager of one analysed copy. The manager of the link cannot be
+/// used: it caches results for the user's module, which is not analysed, and it
+/// outlives the copies.
 struct OwnAnalyses {
   ModuleAnalysisManager AM;
   OwnAnalyses(const Options &Opts, const RuleTables &Rules) {
@@ -73,7 +75,8 @@ struct OwnAnalyses {
 };
 } // namespace
 
-/// Functions whose calls are to be told apart before the analysis says all.
+/// The functions that must be copied for each of their calls before a report
+/// inside them is unambiguous.
 static std::vector<std::string> findSharedFunctions(Module &Seen,
                                                     ModuleAnalysisManager &AM) {
   std::vector<std::string> Shared;
@@ -82,8 +85,8 @@ static std::vector<std::string> findSharedFunctions(Module &Seen,
   return Shared;
 }
 
-/// Plans the reports on what the analysis of \p Analysed found. Up to here the
-/// unit is as it was.
+/// Plans a report for each comparison found in \p Analysed. The link unit is
+/// unchanged up to this call.
 static void planReports(AnalysedModule &Analysed, ModuleAnalysisManager &AM,
                         const Options &Opts, Findings &Out) {
   Module &Seen = Analysed.module();
@@ -92,7 +95,7 @@ static void planReports(AnalysedModule &Analysed, ModuleAnalysisManager &AM,
     return;
   Out.IsChanged = Analysed.isSeparated();
   if (!Analysed.bringBack()) {
-    Out.Failure = "the analysed copy is another program";
+    Out.Failure = "the analysed copy no longer matches the program";
     return;
   }
   const ParamCallFinder::Result &Reads = AM.getResult<ParamCallFinder>(Seen);
@@ -117,15 +120,15 @@ static std::vector<std::string> findNamedHelpers(Module &M, const Options &Opts,
   return namedByCalls(M, Own.AM);
 }
 
-/// Each round analyses the unit anew. Checks in checks are rarely nested
-/// deeper.
+/// Each round analyses the link unit again. Checks are rarely nested more
+/// deeply than this.
 static cl::opt<unsigned> MaxSeparated(
     "tpc-max-separated", cl::Hidden, cl::init(3),
-    cl::desc("Nested functions whose calls are told apart by copies"));
+    cl::desc("Nesting of functions that are copied for each of their calls"));
 
-/// Runs the analysis so that a crash in it, and time or memory without end, is
-/// only a failure of it. \p M is changed only where reports are planned, and as
-/// they need it.
+/// Runs the analysis so that a crash, an endless loop or exhausted memory only
+/// makes the analysis fail, not the link. \p M changes only if reports are
+/// planned.
 static Findings analyseSafely(Module &M, ModuleAnalysisManager &AM,
                               const Options &Opts) {
   Budget Limits(Opts.MaxSeconds, Opts.MaxMemory);
@@ -142,7 +145,7 @@ static Findings analyseSafely(Module &M, ModuleAnalysisManager &AM,
       OwnAnalyses Own(Opts, Rules);
       Module &Seen = Analysed.module();
       std::vector<std::string> Shared = findSharedFunctions(Seen, Own.AM);
-      // Where time or memory ran out, what was counted up to there is told.
+      // If time or memory ran out, report what has been counted so far.
       bool Spent = !Limits.why().empty();
       if (!Spent && Round < MaxSeparated &&
           Analysed.separate(std::move(Shared)))
@@ -156,7 +159,7 @@ static Findings analyseSafely(Module &M, ModuleAnalysisManager &AM,
     }
   });
   if (!Survived) {
-    // What a crash left half done cannot be destroyed.
+    // Never destroy what a crash left half built.
     bool IsChanged = Out.release()->IsChanged;
     Out = std::make_unique<Findings>();
     Out->Failure = "the analysis crashed";
@@ -178,9 +181,8 @@ PreservedAnalyses LinkUnitPass::run(Module &M, ModuleAnalysisManager &AM) {
     if (std::string Why = insertReports(M, F.Reports); !Why.empty())
       F.Failure = std::move(Why);
   if (!F.Failure.empty()) {
-    warn(Opts,
-         F.Failure + (F.IsChanged ? "; this link unit gets no reports"
-                                  : "; this link unit is left as it was"));
+    warn(Opts, F.Failure + (F.IsChanged ? "; this link unit gets no reports"
+                                        : "; this link unit is not changed"));
     F.Unit =
         describeFailure(Opts, F.Failure, F.Unit.Fields.getObject("counts"));
   } else if (json::Object *Counts = F.Unit.Fields.getObject("counts")) {
@@ -188,13 +190,14 @@ PreservedAnalyses LinkUnitPass::run(Module &M, ModuleAnalysisManager &AM) {
   }
   if (!Opts.StaticInfo.empty())
     if (Error E = writeJson(std::move(F.Unit), Opts.StaticInfo))
-      warn(Opts, "static information not written: " + toString(std::move(E)));
+      warn(Opts,
+           "cannot write the static information: " + toString(std::move(E)));
   return PreservedAnalyses::none();
 }
 
-/// The level that the compilers of \p M's files were asked for, the highest
-/// where they differ. Clang records its command line where it is told to
-/// (`-grecord-command-line`); functions of -O0, -Os and -Oz are marked.
+/// The optimisation level that the compilers of \p M's files were given; the
+/// highest one if they differ. Clang records its command line with
+/// `-grecord-command-line`, and marks functions compiled with -O0, -Os and -Oz.
 static OptimizationLevel levelOf(const Module &M) {
   OptimizationLevel Level = OptimizationLevel::O0;
   for (const DICompileUnit *Unit : M.debug_compile_units()) {
@@ -224,7 +227,8 @@ static OptimizationLevel levelOf(const Module &M) {
 PreservedAnalyses PrelinkPass::run(Module &M, ModuleAnalysisManager &AM) {
   if (!AM.getResult<OptionsAnalysis>(M).Prelink)
     return PreservedAnalyses::all();
-  // A pipeline in a pass: its level is known only once the module is.
+  // The pipeline is built inside the pass because its level is known only once
+  // the module is read.
   return PB.buildLTOPreLinkDefaultPipeline(levelOf(M)).run(M, AM);
 }
 

@@ -1,4 +1,4 @@
-//===- LinkUnit.h - What happens to one link unit -------------------------===//
+//===- LinkUnit.h - The passes that run on a link unit --------------------===//
 #ifndef TPC_LINKUNIT_H
 #define TPC_LINKUNIT_H
 
@@ -10,18 +10,18 @@ namespace tpc {
 /// Registers the analyses of TPC.
 void registerAnalyses(llvm::ModuleAnalysisManager &AM);
 
-/// `tpc`: analyses a link unit, puts the reports into it and writes its static
-/// information. Whatever goes wrong inside, the unit is left as it was, with
-/// one warning and a file that says why: a build never breaks because of this.
+/// `tpc`: analyses a link unit, inserts the reports and writes the static
+/// information. If anything fails, the link unit stays unchanged, the linker
+/// prints one warning and the file gives the reason: TPC never breaks a build.
 class LinkUnitPass : public llvm::PassInfoMixin<LinkUnitPass> {
 public:
   llvm::PreservedAnalyses run(llvm::Module &M, llvm::ModuleAnalysisManager &);
   static bool isRequired() { return true; }
 };
 
-/// The optimisation that the compiler was told to leave out, so that the
-/// program could be analysed as it was written: the pipeline that it runs
-/// before a link, at the level that the compiler was asked for.
+/// Runs the optimisation that the compiler left out so that the program could
+/// be analysed as written: the pre-link pipeline, at the level that the
+/// compiler was given.
 class PrelinkPass : public llvm::PassInfoMixin<PrelinkPass> {
 public:
   explicit PrelinkPass(llvm::PassBuilder &PB) : PB(PB) {}

@@ -77,8 +77,9 @@ static cl::opt<Failure>
                          cl::desc("Fail when the analysis ends (for tests)"),
                          failureKinds());
 
-/// The linker's `-o`, from the command line of this process. The module of a
-/// link is always called ld-temp.o, and the linker tells a plugin nothing else.
+/// The linker's `-o`, taken from the command line of this process. The module
+/// of a link is always called ld-temp.o, and the linker passes a plugin no
+/// other name.
 static std::string outputOfThisProcess() {
   auto Buffer = MemoryBuffer::getFileAsStream("/proc/self/cmdline");
   if (!Buffer)
@@ -131,7 +132,7 @@ static bool isBelow(StringRef Path, StringRef Folder) {
 bool Options::isUserSource(StringRef Path) const {
   if (Path.empty())
     return false;
-  // A workspace may be below /usr: the folder that is nearer decides.
+  // A workspace may be below /usr, so the longer of the two folders decides.
   size_t Own = !SourceRoot.empty() && isBelow(Path, SourceRoot)
                    ? StringRef(SourceRoot).rtrim('/').size()
                    : 0;

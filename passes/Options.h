@@ -1,4 +1,4 @@
-//===- Options.h - What a build tells the plugin --------------------------===//
+//===- Options.h - The options of the plugin ------------------------------===//
 #ifndef TPC_OPTIONS_H
 #define TPC_OPTIONS_H
 
@@ -18,27 +18,27 @@ namespace tpc {
 
 /// The options of one link.
 struct Options {
-  std::string LinkUnit;   ///< target's name; else the file name of `-o`
-  std::string Package;    ///< name of the CMake project
+  std::string LinkUnit; ///< name of the target; otherwise the file name of `-o`
+  std::string Package;  ///< name of the CMake project
   std::string SourceRoot; ///< folder that reported files are relative to
-  std::string StaticInfo; ///< where the JSON goes; empty: nowhere
+  std::string StaticInfo; ///< where the JSON is written; empty: nowhere
   std::string Profile;    ///< profile of the rules
   std::vector<std::string> RuleFiles; ///< the user's own tables
   std::vector<std::string> Excluded;  ///< folders that are not the user's
-  bool Analyse = true;                ///< else the unit is only optimised
+  bool Analyse = true;                ///< if false, the unit is only optimised
   bool Instrument = true;
-  bool Constants = false; ///< report comparisons with constants, too
+  bool Constants = false; ///< also report comparisons with constants
   bool Prelink = true;
-  unsigned MaxSeconds = 0; ///< of the analysis; 0 is no limit
-  unsigned MaxMemory = 0;  ///< of the analysis, in MiB; 0 is no limit
+  unsigned MaxSeconds = 0; ///< for the analysis; 0: no limit
+  unsigned MaxMemory = 0;  ///< for the analysis, in MiB; 0: no limit
   Failure InjectFailure = Failure::None;
   Failure InjectLateFailure = Failure::None;
 
-  /// True where \p Path (absolute) is one of the user's own sources: it is
-  /// below none of the excluded folders, or the source root is nearer to it.
+  /// True if \p Path (absolute) is user code: it is in no excluded folder, or
+  /// the source root is the longer prefix.
   bool isUserSource(llvm::StringRef Path) const;
 
-  /// \p Path relative to SourceRoot where it is below it, else unchanged.
+  /// \p Path relative to SourceRoot if it is below it; otherwise \p Path.
   std::string relative(llvm::StringRef Path) const;
 
   /// No pass changes the options.
@@ -48,9 +48,9 @@ struct Options {
   }
 };
 
-/// The options of this process: from its command line (`-mllvm -tpc-*`) and,
-/// for the link unit's name, from the linker's own `-o`. A manager for a copy
-/// of the module is given the options of the module that was copied.
+/// The options of this process. They come from its command line (`-mllvm
+/// -tpc-*`), the name of the link unit also from the linker's `-o`. The manager
+/// of a copied module gets the options of the original module.
 class OptionsAnalysis : public llvm::AnalysisInfoMixin<OptionsAnalysis> {
 public:
   using Result = Options;
@@ -64,11 +64,11 @@ private:
   std::optional<Options> Known;
 };
 
-/// Whose code something is, by the file that its debug information names.
+/// Decides by the file in the debug information whether code is user code.
 class UserSources {
 public:
   explicit UserSources(const Options &Opts) : Opts(Opts) {}
-  /// True where \p F is the user's own; false without debug information.
+  /// True if \p F is user code; false without debug information.
   bool has(const llvm::Function &F);
   bool has(const llvm::DILocation *Loc);
 
@@ -78,8 +78,8 @@ private:
   llvm::DenseMap<const llvm::DIFile *, bool> Known;
 };
 
-/// The absolute path of the file of \p Loc, without `.` and `..`; empty
-/// where there is no location.
+/// The absolute path of the file of \p Loc, without `.` and `..`; empty if
+/// there is no location.
 std::string pathOf(const llvm::DILocation *Loc);
 
 } // namespace tpc

@@ -1,7 +1,7 @@
 //===- Plugin.cpp - Registration ------------------------------------------===//
 //
-// Makes the passes known to lld (full link-time optimisation, at its first
-// point of extension) and to opt (`-passes=...`). Nothing else.
+// Registers the passes with lld (full link-time optimisation, at its first
+// extension point) and with opt (`-passes=...`). Nothing else.
 //
 //===----------------------------------------------------------------------===//
 #include "LinkUnit.h"

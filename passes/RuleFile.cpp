@@ -10,13 +10,19 @@ namespace tpc {
 
 namespace {
 
-/// A section of a file: its rows' kind, and what a row can have besides
-/// `function`, `method`, `arity`, `types` and `profiles`.
+/// A section of a file: the kind of its rows, and the keys that a row may have
+/// besides `function`, `method`, `arity`, `types` and `profiles`.
 struct Section {
   StringLiteral Name;
   Rule::KindTy Kind;
   ArrayRef<StringLiteral> Keys;
   ArrayRef<StringLiteral> Required;
+};
+
+/// A list of names at the top of a file.
+struct NameList {
+  StringLiteral Key;
+  std::vector<std::string> RuleFile::*Names;
 };
 
 class Reader {
@@ -69,7 +75,14 @@ static const Section Sections[] = {
     {"held", Rule::Held, HeldKeys, TextKeys},
 };
 
-/// In the order of the alphabet: a file's first mistake is always the same.
+static constexpr NameList NameLists[] = {
+    {"opaque", &RuleFile::Opaque},
+    {"kept", &RuleFile::Kept},
+    {"counting", &RuleFile::Counting},
+    {"transparent", &RuleFile::Transparent},
+};
+
+/// Sorted, so that the first error reported for a file is always the same.
 static std::vector<StringRef> keysOf(const json::Object &O) {
   std::vector<StringRef> Keys;
   for (const auto &[Key, Unused] : O)
@@ -78,14 +91,14 @@ static std::vector<StringRef> keysOf(const json::Object &O) {
   return Keys;
 }
 
-/// An argument number of a row; no function has more.
+/// The largest argument number; no function has more arguments.
 static constexpr int64_t MaxNumber = 255;
 
 Error Reader::number(const json::Value &V, StringRef Place,
                      std::optional<unsigned> &Out) {
   std::optional<int64_t> N = V.getAsInteger();
   if (!N || *N < 0 || *N > MaxNumber)
-    return wrong(Place, "is not a whole number from 0 to 255");
+    return wrong(Place, "must be a whole number from 0 to 255");
   Out = static_cast<unsigned>(*N);
   return Error::success();
 }
@@ -93,7 +106,7 @@ Error Reader::number(const json::Value &V, StringRef Place,
 Error Reader::text(const json::Value &V, StringRef Place, std::string &Out) {
   std::optional<StringRef> Text = V.getAsString();
   if (!Text || Text->empty())
-    return wrong(Place, "is not a text, or an empty one");
+    return wrong(Place, "must be a non-empty string");
   Out = Text->str();
   return Error::success();
 }
@@ -102,7 +115,7 @@ Error Reader::texts(const json::Value &V, StringRef Place,
                     std::vector<std::string> &Out) {
   const json::Array *List = V.getAsArray();
   if (!List)
-    return wrong(Place, "is not a list");
+    return wrong(Place, "must be a list");
   for (const auto &[N, Item] : enumerate(*List))
     if (Error E =
             text(Item, (Place + "/" + Twine(N)).str(), Out.emplace_back()))
@@ -113,12 +126,12 @@ Error Reader::texts(const json::Value &V, StringRef Place,
 Error Reader::truth(const json::Value &V, StringRef Place, bool &Out) {
   std::optional<bool> B = V.getAsBoolean();
   if (!B)
-    return wrong(Place, "is neither true nor false");
+    return wrong(Place, "must be true or false");
   Out = *B;
   return Error::success();
 }
 
-/// A part of a name: an argument's number, "this", or {"text": ...}.
+/// A part of a name: the number of an argument, "this", or {"text": ...}.
 Error Reader::part(const json::Value &V, StringRef Place, Rule &R) {
   Rule::Part P{Rule::Part::Argument, 0, ""};
   if (V.getAsString() == "this") {
@@ -127,7 +140,7 @@ Error Reader::part(const json::Value &V, StringRef Place, Rule &R) {
     P.From = Rule::Part::Constant;
     const json::Value *Text = Constant->get("text");
     if (!Text || Constant->size() != 1)
-      return wrong(Place, "does not have \"text\" and that alone");
+      return wrong(Place, "must have the key \"text\" and no other");
     if (Error E = text(*Text, (Place + "/text").str(), P.Text))
       return E;
   } else {
@@ -178,7 +191,7 @@ Error Reader::field(StringRef Key, const json::Value &V, StringRef Place,
   assert(Key == "parts" && "a key that no section has");
   const json::Array *Parts = V.getAsArray();
   if (!Parts || Parts->empty())
-    return wrong(Place, "is not a list, or an empty one");
+    return wrong(Place, "must be a non-empty list");
   for (const auto &[N, Item] : enumerate(*Parts))
     if (Error E = part(Item, (Place + "/" + Twine(N)).str(), R))
       return E;
@@ -189,7 +202,7 @@ Error Reader::row(const json::Value &V, const Section &In, StringRef Place,
                   RuleFile &Out) {
   const json::Object *Row = V.getAsObject();
   if (!Row)
-    return wrong(Place, "is not an object");
+    return wrong(Place, "must be an object");
   static constexpr StringLiteral Common[] = {"function", "method", "arity",
                                              "types"};
   Rule R;
@@ -205,7 +218,7 @@ Error Reader::row(const json::Value &V, const Section &In, StringRef Place,
       if (Error E = field(Key, Field, At, R))
         return E;
     } else {
-      return wrong(At, "is nothing that a row of \"" + In.Name + "\" has");
+      return wrong(At, "is not a key of a row of \"" + In.Name + "\"");
     }
   }
   if (R.Function.empty())
@@ -213,7 +226,7 @@ Error Reader::row(const json::Value &V, const Section &In, StringRef Place,
   for (StringRef Key : In.Required)
     if (!Row->get(Key))
       return wrong(Place, "has no \"" + Key + "\"");
-  // A row without profiles belongs to all.
+  // A row without profiles belongs to every profile.
   if (Profiles.empty() || is_contained(Profiles, Profile))
     Out.Rows.push_back(std::move(R));
   return Error::success();
@@ -222,11 +235,11 @@ Error Reader::row(const json::Value &V, const Section &In, StringRef Place,
 Error Reader::containers(const json::Value &V, StringRef Place, RuleFile &Out) {
   const json::Object *Names = V.getAsObject();
   if (!Names)
-    return wrong(Place, "is not an object");
+    return wrong(Place, "must be an object");
   for (StringRef Key : keysOf(*Names)) {
     std::string At = (Place + "/" + Key).str();
     if (Key != "classes" && Key != "reading")
-      return wrong(At, "is nothing that \"containers\" has");
+      return wrong(At, "is not a key of \"containers\"");
     if (Error E =
             texts(*Names->get(Key), At,
                   Key == "classes" ? Out.ContainerClasses : Out.ReadingMethods))
@@ -238,7 +251,7 @@ Error Reader::containers(const json::Value &V, StringRef Place, RuleFile &Out) {
 Error Reader::file(const json::Value &Value, RuleFile &Out) {
   const json::Object *Top = Value.getAsObject();
   if (!Top)
-    return wrong("/", "is not an object");
+    return wrong("/", "must be an object");
   for (StringRef Key : keysOf(*Top)) {
     std::string Place = ("/" + Key).str();
     const json::Value &V = *Top->get(Key);
@@ -248,25 +261,18 @@ Error Reader::file(const json::Value &Value, RuleFile &Out) {
         return E;
     } else if (Key == "schema") {
       if (V.getAsInteger() != 1)
-        return wrong(Place, "is not 1");
-    } else if (Key == "opaque") {
-      if (Error E = texts(V, Place, Out.Opaque))
-        return E;
-    } else if (Key == "kept") {
-      if (Error E = texts(V, Place, Out.Kept))
-        return E;
-    } else if (Key == "counting") {
-      if (Error E = texts(V, Place, Out.Counting))
-        return E;
-    } else if (Key == "transparent") {
-      if (Error E = texts(V, Place, Out.Transparent))
+        return wrong(Place, "must be 1");
+    } else if (const auto *List = find_if(
+                   NameLists, [&](const NameList &L) { return L.Key == Key; });
+               List != std::end(NameLists)) {
+      if (Error E = texts(V, Place, Out.*List->Names))
         return E;
     } else if (Key == "containers") {
       if (Error E = containers(V, Place, Out))
         return E;
     } else if (none_of(Sections,
                        [&](const Section &S) { return S.Name == Key; })) {
-      return wrong(Place, "is no section");
+      return wrong(Place, "is not a section of a rule file");
     }
   }
   for (const Section &S : Sections) {
@@ -275,7 +281,7 @@ Error Reader::file(const json::Value &Value, RuleFile &Out) {
       continue;
     const json::Array *Rows = V->getAsArray();
     if (!Rows)
-      return wrong("/" + S.Name, "is not a list");
+      return wrong("/" + S.Name, "must be a list");
     for (const auto &[N, Item] : enumerate(*Rows))
       if (Error E = row(Item, S, ("/" + S.Name + "/" + Twine(N)).str(), Out))
         return E;

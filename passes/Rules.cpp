@@ -92,7 +92,7 @@ RuleTables RuleTableAnalysis::run(Module &M, ModuleAnalysisManager &AM) {
   return {std::make_shared<Rules>(std::move(*R)), ""};
 }
 
-/// True where the written parameters of \p F are those that \p R names.
+/// True if the parameter types written for \p F are those that \p R names.
 static bool hasTypes(const Function &F, const Rule &R) {
   if (R.Types.empty())
     return true;
@@ -104,8 +104,8 @@ static bool hasTypes(const Function &F, const Rule &R) {
          });
 }
 
-/// True where one of \p F's operands is a std::string: its own methods, and
-/// the operators, which many classes have under the same name.
+/// True if \p F is a method of std::string, or an operator with a std::string
+/// operand. Many classes have operators of the same name.
 static bool takesText(const Function &F, StringRef Name) {
   return Name.contains("basic_string::") ||
          any_of(parameterTypes(F), [](const std::string &T) {
@@ -133,7 +133,8 @@ const Rules::Match &Rules::match(const Function &F) const {
   Match &M = It->second;
   M.Name = qualifiedName(F.getName());
   M.Row = rowOf(F, M.Name);
-  // A function of a family that only its mangled name tells from others.
+  // Functions of one family, which only the mangled name distinguishes from
+  // others.
   auto Begins = [&](StringRef Prefix) {
     return StringRef(M.Name).starts_with(Prefix) ||
            (Prefix.starts_with("_Z") && F.getName().starts_with(Prefix));
@@ -148,8 +149,8 @@ const Rules::Match &Rules::match(const Function &F) const {
   return M;
 }
 
-/// True for a method without an object. Where no debug information tells, it is
-/// one that is handed nothing.
+/// True for a static method. Without debug information, a method without
+/// arguments counts as static.
 static bool isStaticMethod(const Function &F) {
   const DISubprogram *SP = F.getSubprogram();
   if (!SP || !SP->getType())
@@ -160,7 +161,7 @@ static bool isStaticMethod(const Function &F) {
 
 RuleMatches::RuleMatches(std::shared_ptr<const Rules> All, Module &M)
     : Tables(std::move(All)) {
-  std::vector<std::string> Classes; // whose fields are parameters
+  std::vector<std::string> Classes; // classes whose fields are parameters
   for (const Function &F : M) {
     const Rules::Match &Found = Tables->match(F);
     if (Found.Row) {
@@ -175,7 +176,7 @@ RuleMatches::RuleMatches(std::shared_ptr<const Rules> All, Module &M)
     if (Found.Kept)
       Kept.insert(&F);
   }
-  // What belongs to such a class was generated with it.
+  // The generator of such a class also generated these methods.
   if (Classes.empty())
     return;
   for (const Function &F : M)
@@ -203,14 +204,14 @@ const RuleMatches::Inlined &RuleMatches::inlined(const DISubprogram &F) const {
 
 const ContainerMethod *RuleMatches::container(const CallBase &Call) const {
   const Function *Callee = Call.getCalledFunction();
-  auto It = Callee ? Containers.find(Callee) : Containers.end();
+  const auto *It = Callee ? Containers.find(Callee) : Containers.end();
   return It == Containers.end() ? nullptr : &It->second;
 }
 
 namespace {
 
-/// Which functions of libraries call the user's own: the constructors of the
-/// elements of a container, say.
+/// Finds library functions that call user code, such as the constructors of a
+/// container's elements.
 class UserCode {
 public:
   explicit UserCode(const Options &Opts) : Sources(Opts) {}

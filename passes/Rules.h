@@ -1,9 +1,10 @@
-//===- Rules.h - The tables that drive the analysis -----------------------===//
+//===- Rules.h - The rules that drive the analysis ------------------------===//
 //
-// Which calls read a parameter, which expose a node's state, which give a
-// publisher its topic and a node handle its namespace: see
-// docs/reference/analysis.md. The tables are JSON files (see RuleFile.h). Those
-// of TPC (rules/*.json) are compiled in; the user's are added to them.
+// The tables say which calls read a parameter, which expose the state of a
+// node, which give a publisher its topic and which give a node handle its
+// namespace: docs/reference/analysis.md. They are JSON files (see RuleFile.h).
+// TPC's own tables (rules/*.json) are compiled in; those of the user are added
+// to them.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_RULES_H
@@ -35,15 +36,15 @@ struct Options;
 struct Rule {
   enum KindTy {
     Read,     ///< reads a parameter
-    Exposing, ///< shows what a node has come to
+    Exposing, ///< makes the state of a node visible
     Topic,    ///< gives a publisher or client its topic
-    Naming,   ///< makes a name, or a handle with a namespace
-    Accessor, ///< takes the value out of an object that a read gave
-    Config,   ///< hands a class of which each field is a parameter
+    Naming,   ///< makes a name, or a node handle with a namespace
+    Accessor, ///< takes the value out of an object that a read returned
+    Config,   ///< passes a class whose fields are all parameters
     Text,     ///< compares or copies text
     Held,     ///< puts a number into an object, or takes it out
   };
-  /// A piece of what a row of kind Naming makes.
+  /// A part of the name that a row of kind Naming makes.
   struct Part {
     enum FromTy { Argument, Object, Constant } From;
     unsigned Number = 0; ///< of the argument
@@ -54,65 +55,67 @@ struct Rule {
   KindTy Kind;
   std::string Function;          ///< qualified name without template arguments
   bool Method = false;           ///< has a `this`
-  std::optional<unsigned> Arity; ///< none: every overload
-  /// The parameters' types without const, & and template arguments; `*` is any.
+  std::optional<unsigned> Arity; ///< unset: all overloads
+  /// The types of the parameters without const, & and template arguments; `*`
+  /// matches any type.
   std::vector<std::string> Types;
   std::optional<unsigned>
-      Name; ///< argument with the parameter's or topic's name
+      Name; ///< argument that holds the name of the parameter or topic
   std::optional<unsigned> Value; ///< argument that the value is written to;
-                                 ///< none: it is the result
+                                 ///< unset: the value is the result
   std::optional<unsigned> Default;
-  /// The namespace of `this`, a node handle, stands before the name.
+  /// The namespace of `this`, a node handle, is put before the name.
   bool Handle = false;
-  std::vector<Part> Parts; ///< joined as names are, by slashes
-  /// The name is looked up as it is: no namespace comes before it any more.
+  std::vector<Part> Parts; ///< joined with slashes
+  /// The name is looked up as it is: no namespace is put before it.
   bool Absolute = false;
   TargetTy Target = ToResult;
   unsigned TargetArgument = 0;
-  /// Of what is done with text: the operator that the result answers, `compare`
-  /// where it is to be compared with zero, `copy` where nothing is asked. Of an
-  /// object that holds one number: `into` or `outof`.
+  /// For text: the operator that the result stands for, `compare` if the result
+  /// is to be compared with zero, `copy` if the call copies text. For an object
+  /// that holds a number: `into` or `outof`.
   std::string Relation;
 };
 
-/// A method of a container of values.
+/// A method of a container.
 struct ContainerMethod {
   bool Writes; ///< puts its arguments into the container
 };
 
-/// The IR operand of \p Call for the source-level argument \p Number of a
-/// function that \p R describes; null where there is none.
+/// The IR operand of \p Call for the argument that the source counts as
+/// \p Number; null if there is none. \p R describes the called function.
 llvm::Value *argument(const llvm::CallBase &Call, const Rule &R,
                       std::optional<unsigned> Number);
 
-/// The `this` operand of \p Call; null for a function that is no method.
+/// The `this` operand of \p Call; null if the function is not a method.
 llvm::Value *objectOf(const llvm::CallBase &Call, const Rule &R);
 
 class Rules {
 public:
-  /// The built-in tables and \p Opts' files, restricted to its profile.
+  /// The built-in tables and the files of \p Opts, restricted to its profile.
   static llvm::Expected<Rules> load(const Options &Opts);
 
-  /// What the tables say of a function.
+  /// What the tables say about a function.
   struct Match {
     std::string Name; ///< qualified, without template arguments
     const Rule *Row = nullptr;
-    bool Opaque = false; ///< it is in one of the opaque namespaces
-    bool Kept = false;   ///< it stays a call that is looked into
-    /// What it does to a container; none where it is no method of one.
+    bool Opaque = false; ///< in one of the opaque namespaces
+    bool Kept = false;   ///< stays a call whose body is analysed
+    /// What the function does to a container; unset if it is not a container's
+    /// method.
     std::optional<ContainerMethod> Container;
   };
   const Match &match(const llvm::Function &F) const;
-  /// True where the class called \p Name is in one of the opaque namespaces.
+  /// True if the class \p Name is in one of the opaque namespaces.
   bool isOpaque(llvm::StringRef Name) const;
-  /// True where comparisons in a function of this qualified name are its
-  /// caller's.
+  /// True if comparisons inside a function of this qualified name count as
+  /// comparisons of its caller.
   bool isTransparent(llvm::StringRef Name) const {
     return Transparent.contains(Name);
   }
 
-  /// True where a function of this qualified name only counts who still needs
-  /// an object.
+  /// True if a function of this qualified name only counts references to an
+  /// object.
   bool isCounting(llvm::StringRef Name) const;
 
 private:
@@ -121,11 +124,11 @@ private:
   llvm::StringMap<std::vector<Rule>> ByName;
   std::vector<std::string> OpaquePrefixes, KeptPrefixes, CountingPrefixes;
   llvm::StringSet<> ContainerClasses, ReadingMethods, Transparent;
-  /// By mangled name: each is demangled once.
+  /// Cached by mangled name, so that each name is demangled once.
   mutable llvm::StringMap<Match> Known;
 };
 
-/// The tables of a link; empty ones, and why, where they cannot be read.
+/// The tables of a link; if they cannot be read, empty tables and the reason.
 struct RuleTables {
   std::shared_ptr<const Rules> Tables;
   std::string Error;
@@ -137,8 +140,8 @@ struct RuleTables {
   }
 };
 
-/// Reads the tables. A manager for a copy of the module is given those of the
-/// module that was copied: they are read, and names are demangled, once.
+/// Reads the tables. The manager of a copied module gets the tables of the
+/// original module, so that they are read, and names demangled, once.
 class RuleTableAnalysis : public llvm::AnalysisInfoMixin<RuleTableAnalysis> {
 public:
   using Result = RuleTables;
@@ -156,38 +159,39 @@ private:
 class RuleMatches {
 public:
   RuleMatches(std::shared_ptr<const Rules> Tables, llvm::Module &M);
-  /// Makes opaque the methods of containers that call nothing of the user's.
+  /// Makes container methods opaque if they call no user code.
   void closeContainers(const Options &Opts);
 
-  /// The row that the callee of \p Call matches, or null.
+  /// The row that matches the callee of \p Call, or null.
   const Rule *match(const llvm::CallBase &Call) const;
-  /// True where \p F is not looked into: a row stands for it, or its name
-  /// begins with one that the tables call opaque.
+  /// True if the body of \p F is not analysed: a row describes \p F, or its
+  /// name begins with an opaque prefix.
   bool isOpaque(const llvm::Function &F) const {
     return Rows.contains(&F) || Opaque.contains(&F);
   }
-  /// True where the class called \p Name is in one of the opaque namespaces.
+  /// True if the class \p Name is in one of the opaque namespaces.
   bool isOpaque(llvm::StringRef Name) const { return Tables->isOpaque(Name); }
-  /// See Rules::isTransparent; \p F may have been inlined.
+  /// See Rules::isTransparent; works for inlined functions too.
   bool isTransparent(const llvm::DISubprogram &F) const {
     return inlined(F).Transparent;
   }
-  /// See Rules::isCounting; \p F may have been inlined.
+  /// See Rules::isCounting; works for inlined functions too.
   bool isCounting(const llvm::DISubprogram &F) const {
     return inlined(F).Counting;
   }
-  /// The container's method that \p Call calls, or null.
+  /// The container method that \p Call calls, or null.
   const ContainerMethod *container(const llvm::CallBase &Call) const;
-  /// True where \p F stays a call, however small it is.
+  /// True if \p F is never inlined, however small it is.
   bool staysCall(const llvm::Function &F) const {
     return isOpaque(F) || Kept.contains(&F) || Containers.contains(&F);
   }
-  /// True where \p F is looked into as a call of its own: it holds functions or
-  /// what is bound to them.
+  /// True if \p F stays a call and its body is analysed: it stores functions or
+  /// bound arguments.
   bool isKept(const llvm::Function &F) const { return Kept.contains(&F); }
 
 private:
-  /// What the tables say of a function that may be there no more.
+  /// What the tables say about a function that may have been inlined
+  /// everywhere.
   struct Inlined {
     bool Transparent = false, Counting = false;
   };
@@ -201,9 +205,9 @@ private:
   mutable llvm::DenseMap<const llvm::DISubprogram *, Inlined> InlinedFunctions;
 };
 
-/// Calls \p F with each call in \p M that a row of \p Kind describes, and with
-/// the row; in the order of the module. What is inside a described function
-/// is ROS's own.
+/// Calls \p F with each call in \p M that a row of \p Kind describes and with
+/// that row, in the order of the module. Skips calls inside functions that a
+/// row describes: they are part of ROS.
 template <typename Fn>
 void forEachCall(llvm::Module &M, const RuleMatches &Rules, Rule::KindTy Kind,
                  Fn F) {

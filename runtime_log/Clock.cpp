@@ -8,8 +8,8 @@ namespace tpc {
 
 std::atomic<const Clock::Line *> Clock::Current{nullptr};
 
-/// Whether the kernel trusts the counter: on all processors the same, at one
-/// rate whatever they do.
+/// Whether the kernel trusts the counter: it is the same on all processors and
+/// its rate is constant.
 static bool counterIsTrusted() {
 #if defined(__aarch64__)
   return true;
@@ -28,7 +28,7 @@ static bool counterIsTrusted() {
 #endif
 }
 
-/// Both clocks at one instant: the closest of a few tries.
+/// Reads both clocks at one instant: the closest of a few tries.
 Clock::Line Clock::sample() {
   Line Best{};
   uint64_t Closest = ~uint64_t(0);
@@ -50,8 +50,8 @@ void Clock::prepare() { Trusted = counterIsTrusted(); }
 
 void Clock::adjust() {
   static Line Previous{};
-  // A reader may hold a line for as long as it likes to sleep between two
-  // instructions; after a thousand renewals it would see a newer one.
+  // A reader may be interrupted for any time while it reads a line; only after
+  // a thousand renewals would it see a newer one.
   static Line Lines[1024];
   static unsigned Next = 0;
   if (!Trusted)
@@ -63,16 +63,17 @@ void Clock::adjust() {
   }
   if (Now.Ns - Previous.Ns < 1'000'000)
     return;
-  // The rate is that since the reading before; the line goes on from where the
-  // last one is now and comes back to the clock within a second.
+  // The rate is measured since the previous reading. The new line continues at
+  // the current value of the last one and reaches the clock within a second.
   auto Rate =
       static_cast<int64_t>((static_cast<__int128>(Now.Ns - Previous.Ns) << 32) /
                            static_cast<__int128>(Now.Ticks - Previous.Ticks));
-  // The first one is a little ahead: no thread sees time go back for it.
+  // The first line is slightly ahead, so that no thread sees time go back when
+  // it takes over.
   int64_t Error = 300;
   if (const Line *Last = Current.load(std::memory_order_relaxed)) {
     Error = at(*Last, Now.Ticks) - Now.Ns;
-    // A machine that slept: the clock is right, the line is not.
+    // After a suspend the clock is right and the line is not.
     if (Error > 1'000'000 || Error < -1'000'000)
       Error = 0;
   }

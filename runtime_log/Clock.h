@@ -1,9 +1,9 @@
 //===- Clock.h - Steady time, cheap enough for every report ---------------===//
 //
-// CLOCK_MONOTONIC in nanoseconds. Where the kernel itself keeps time by the
-// processor's counter, the counter is read directly and a line through two
-// readings of both, renewed every second, makes nanoseconds of it: that costs
-// less than half of clock_gettime.
+// CLOCK_MONOTONIC in nanoseconds. If the kernel itself keeps time with the
+// processor's counter, the counter is read directly. A line through two
+// readings of both, renewed every second, converts it to nanoseconds. That
+// costs less than half of clock_gettime.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_CLOCK_H
@@ -21,8 +21,8 @@ namespace tpc {
 
 class Clock {
 public:
-  /// Steady time. Never goes back in a thread by more than the error of the
-  /// line (well below a microsecond).
+  /// Steady time. In one thread it never goes back by more than the error of
+  /// the line (well below a microsecond).
   static int64_t now() {
     const Line *L = Current.load(std::memory_order_acquire);
     if (__builtin_expect(!L, 0))
@@ -33,12 +33,12 @@ public:
   static int64_t steady() { return read(CLOCK_MONOTONIC); }
   static int64_t real() { return read(CLOCK_REALTIME); }
 
-  /// Asks the kernel whether the counter may be used; before the first
+  /// Asks the kernel whether the counter may be used; call before the first
   /// adjust().
   static void prepare();
 
-  /// Draws the line anew; from one thread, about once a second. The first call
-  /// takes the first reading, the second begins to use the counter.
+  /// Renews the line; call from one thread, about once a second. The first call
+  /// takes the first reading; from the second on the counter is used.
   static void adjust();
 
   static bool usesCounter() {
@@ -49,7 +49,7 @@ private:
   struct Line {
     uint64_t Ticks;
     int64_t Ns;
-    int64_t Mult; ///< nanoseconds of a tick times 2^32
+    int64_t Mult; ///< nanoseconds per tick times 2^32
   };
 
   static int64_t at(const Line &L, uint64_t Ticks) {

@@ -30,7 +30,7 @@ bool Config::operator==(const Config &Other) const {
 template <typename Enum, size_t N>
 static bool choose(Enum &E, const char *const (&Names)[N],
                    const std::string &Value, std::string &Why) {
-  Why = "is none of";
+  Why = "it must be one of";
   for (size_t I = 0; I < N; ++I) {
     if (Value == Names[I]) {
       E = static_cast<Enum>(I);
@@ -54,7 +54,7 @@ static bool read(Number &X, const std::string &Value, Number Least,
 }
 
 static bool count(uint64_t &X, const std::string &Value, std::string &Why) {
-  Why = "is no whole number";
+  Why = "it must be a whole number";
   return read<uint64_t>(X, Value, 0, uint64_t(1) << 40);
 }
 
@@ -66,7 +66,7 @@ bool parse(Config &C, const std::string &Name, const std::string &Value,
     return choose(C.Policy, PolicyNames, Value, Why);
   if (Name == "period") {
     double Seconds;
-    Why = "is no number of seconds from 0.001 to 3600";
+    Why = "it must be a number of seconds from 0.001 to 3600";
     if (!read<double>(Seconds, Value, 1e-3, 3600))
       return false;
     C.PeriodNs = static_cast<int64_t>(Seconds * 1e9);
@@ -84,7 +84,7 @@ bool parse(Config &C, const std::string &Name, const std::string &Value,
     C.Folder = Value;
     return true;
   }
-  Why = "is no setting";
+  Why = "there is no such setting";
   return false;
 }
 
@@ -97,7 +97,7 @@ Config configOfEnvironment() {
     const char *Value = std::getenv(Variable.c_str());
     std::string Why;
     if (Value && *Value && !parse(C, Name, Value, Why))
-      warn(Variable + "=" + Value + " " + Why + "; it is left as it was");
+      warn(Variable + "=" + Value + " is ignored: " + Why);
   }
   return C;
 }

@@ -1,4 +1,4 @@
-//===- Config.h - What a process reports, and where to --------------------===//
+//===- Config.h - The settings --------------------------------------------===//
 #ifndef TPC_CONFIG_H
 #define TPC_CONFIG_H
 
@@ -18,26 +18,27 @@ struct Config {
   SinkKind Sink = SinkKind::Rosout;
   tpc::Policy Policy = Policy::Every;
   int64_t PeriodNs = 100'000'000;
-  uint64_t SiteCap = 0;          ///< reports a second; 0: no cap
-  uint64_t ProcessCap = 0;       ///< reports a second; 0: no cap
+  uint64_t SiteCap = 0;          ///< reports per second; 0: no cap
+  uint64_t ProcessCap = 0;       ///< reports per second; 0: no cap
   std::string Folder;            ///< empty: $ROS_HOME/tpc, else ~/.ros/tpc
-  uint64_t FileLimitMiB = 4096;  ///< of one file; 0: none
-  uint64_t FileReserveMiB = 256; ///< left free on the disk
+  uint64_t FileLimitMiB = 4096;  ///< per file; 0: no limit
+  uint64_t FileReserveMiB = 256; ///< kept free on the disk
 
   bool operator==(const Config &Other) const;
 };
 
-/// Every name that parse() knows, as it is in the ROS parameter; in the
-/// environment it is `TPC_` and the name in capitals.
+/// All names that parse() accepts, as in the ROS parameter; the variable of the
+/// environment is `TPC_` and the name in capitals.
 extern const char *const ConfigNames[8];
 
-/// Sets what \p Name (`sink`, `policy`, `period`, ...) says to \p Value. Where
-/// that is no value of it, \p C is as it was and \p Why says so in one clause.
+/// Sets the setting \p Name (`sink`, `policy`, `period`, ...) to \p Value. If
+/// the value is invalid, returns false, leaves \p C unchanged and sets \p Why
+/// to one clause.
 bool parse(Config &C, const std::string &Name, const std::string &Value,
            std::string &Why);
 
-/// The defaults and the environment. What is set wrongly gets a warning and is
-/// left at its default: a node is never stopped for this.
+/// The defaults, overridden by the environment. An invalid value logs a warning
+/// and leaves the default: a node is never stopped because of it.
 Config configOfEnvironment();
 
 const char *text(SinkKind K);

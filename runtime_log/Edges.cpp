@@ -21,7 +21,7 @@ static constexpr int64_t Patience = 100'000'000;
 
 namespace {
 
-/// When a period began.
+/// The time when a period began.
 struct Beginning {
   int64_t Steady, Ros;
 };
@@ -43,12 +43,12 @@ static int64_t rosTime() {
 // In the reporting threads
 //===----------------------------------------------------------------------===//
 
-/// Two slots for a site that is new to the thread, or after the sink was
-/// changed: in the file, where they are read even if the process is killed.
+/// Makes two slots for a site that is new to the thread, or after the sink
+/// changed. Slots in the file can be read even if the process is killed.
 static void makePair(Thread &T, const Site &S) {
   LogFile *File = SlotsHome.load(std::memory_order_acquire);
   if (T.PairsHome != File) {
-    // What is in the old ones is taken by the helper thread.
+    // The helper thread takes the contents of the old slots.
     std::fill(T.Pairs, T.Pairs + T.PairCount, nullptr);
     T.PairsHome = File;
   }
@@ -93,7 +93,7 @@ static Summary summaryOf(const layout::Summary &K) {
           K.EndRos};
 }
 
-/// Hands a slot's summary on and empties it.
+/// Passes the summary of a slot to the sink and empties the slot.
 static void take(Slot &From, Sink &To, int64_t EndSteady, int64_t EndRos) {
   layout::Summary &K = From.Kept;
   if (!K.Count)
@@ -104,12 +104,12 @@ static void take(Slot &From, Sink &To, int64_t EndSteady, int64_t EndRos) {
   K.Count = From.Begun = 0;
 }
 
-/// The slot is empty, or of a period that is over.
+/// Begins a slot that is empty, or belongs to an earlier period.
 static void beginSlot(Thread &T, const Site &S, Slot &In, uint32_t Now) {
   std::lock_guard<std::mutex> Guard(T.Lock);
   layout::Summary &K = In.Kept;
-  // This thread was held up inside of an old period for so long that the
-  // helper went on without it.
+  // This thread stopped inside an old period for so long that the helper
+  // continued without it.
   take(In, *NowSink.load(), Clock::now(), rosTime());
   const Beginning &B = Beginnings[Now & 3];
   K = {};
@@ -124,7 +124,7 @@ static void beginSlot(Thread &T, const Site &S, Slot &In, uint32_t Now) {
   T.Touched[Now & 1].push_back(&In);
 }
 
-/// The predicate may have come to something else than the last time.
+/// Reports a flop if the outcome of the predicate differs from the last one.
 static void edge(Thread &T, Site &S, Slot &In, const Report &R) {
   std::lock_guard<std::mutex> Guard(S.Lock);
   int8_t Last = S.Last.load(std::memory_order_relaxed);
@@ -135,7 +135,8 @@ static void edge(Thread &T, Site &S, Slot &In, const Report &R) {
   In.Kept.Flops += IsFlop;
   if (isOverCap(S, IsFlop))
     return;
-  // Under the lock, so that flops stand in the order in which they happened.
+  // Under the lock, so that flops are recorded in the order in which they
+  // happened.
   emit(T, S, R, layout::EdgeBit);
 }
 
@@ -181,11 +182,12 @@ static void sleepMs(long Ms) {
   nanosleep(&T, nullptr);
 }
 
-/// Waits until no thread is inside of the old period any more. Leaves out those
-/// that are held up for longer than the patience: their slots wait.
+/// Waits until no thread is inside the old period. Leaves out threads that take
+/// longer than the patience: their slots are taken later.
 static std::vector<Thread *> withoutLate(std::vector<Thread *> Threads) {
-  // A thread says that it is inside by a plain store before it looks at the
-  // period: this makes the store visible, or the new period.
+  // A thread marks itself as inside by a plain store before it reads the
+  // period. The barrier makes either this store visible here, or the new period
+  // there.
   if (!HasBarrier ||
       syscall(SYS_membarrier, MEMBARRIER_CMD_PRIVATE_EXPEDITED, 0, 0))
     sleepMs(1);
@@ -226,7 +228,7 @@ static void flushPeriod(Sink &S) {
     for (Slot *In : Touched)
       take(*In, S, EndSteady, EndRos);
     Touched.clear();
-    // Its room is used again.
+    // The space is reused.
     std::lock_guard<std::mutex> Guard(T->Lock);
     if (T->Touched[Old & 1].empty())
       Touched.swap(T->Touched[Old & 1]);

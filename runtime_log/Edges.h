@@ -1,9 +1,9 @@
 //===- Edges.h - The policy `edges` ---------------------------------------===//
 //
-// Each flop is reported, and of all evaluations a summary is kept for each
-// site, thread and period. A thread adds to its own slots without a lock, those
-// of even and odd periods in turn; the helper thread begins a new period, waits
-// until no thread is still inside of the old one, and takes its slots.
+// Each flop is reported. All evaluations are summarised for each site, thread
+// and period. A thread adds to its own slots without a lock, alternating
+// between a slot for even and one for odd periods. The helper thread begins a
+// new period, waits until no thread is inside the old one, and takes its slots.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_EDGES_H
@@ -15,29 +15,31 @@
 
 namespace tpc {
 
-/// The file that slots are in, where that is the sink; else null.
+/// The file that contains the slots if the sink is a file; otherwise null.
 extern std::atomic<LogFile *> SlotsHome;
 
-/// The period that has begun last.
+/// The current period.
 extern std::atomic<uint32_t> NowPeriod;
 
-/// |compared - threshold| above which an evaluation is far
+/// An evaluation is far if |compared - threshold| is larger than this
 /// (docs/reference/runtime.md).
 constexpr double FarFrom = 1e-4;
 
 template <typename T> inline void setIf(bool Changes, T &To, T Value) {
   if (__builtin_expect(Changes, 0)) {
     To = Value;
-    asm volatile("" ::: "memory"); // a branch, and no store of what was there
+    asm volatile("" ::
+                     : "memory"); // forces a branch: the compiler must not
+                                  // store unconditionally
   }
 }
 
-/// Adds one evaluation of usual values to a slot. \p Bits are those of the
+/// Adds one evaluation of finite values to a slot. \p Bits are those of the
 /// outcomes.
 inline void add(layout::Slot &To, uint32_t Bits, double Compared,
                 double Threshold) {
   layout::Summary &K = To.Kept;
-  // Begun and Count tell a reader of the file whether the process ended in
+  // A reader of the file sees from Begun and Count whether the process ended in
   // between.
   To.Begun += 1;
   std::atomic_signal_fence(std::memory_order_release);
@@ -49,7 +51,7 @@ inline void add(layout::Slot &To, uint32_t Bits, double Compared,
   K.AbsSum += Size;
   K.Far += Size > FarFrom;
   K.Compared = Compared;
-  // These seldom change, and not to write is cheaper than to write.
+  // These seldom change, and a comparison is cheaper than a store.
   setIf(Diff < K.DiffMin, K.DiffMin, Diff);
   setIf(Diff > K.DiffMax, K.DiffMax, Diff);
   setIf(Low < K.Low, K.Low, Low);
@@ -61,10 +63,10 @@ inline void add(layout::Slot &To, uint32_t Bits, double Compared,
   K.Count += 1;
 }
 
-/// Takes in one evaluation.
+/// Records one evaluation.
 void edges(Thread &T, Site &S, const Report &R);
 
-/// The same where it is no flop and nothing else stands in the way; else does
+/// The same if the evaluation is no flop and needs no slow path; otherwise does
 /// nothing and returns false.
 inline bool edgesAtOnce(Thread &T, const Site &S, bool Result, uint32_t Bits,
                         double Compared, double Threshold) {
@@ -77,7 +79,7 @@ inline bool edgesAtOnce(Thread &T, const Site &S, bool Result, uint32_t Bits,
     return false;
   uint32_t Now = NowPeriod.load(std::memory_order_acquire);
   layout::Slot &In = Pair->Of[Now & 1];
-  // (Also false with what is no number.)
+  // Also false for NaN.
   if (!In.Kept.Count || In.Kept.Period != Now ||
       !(__builtin_fabs(Compared - Threshold) <= 1.7976931348623157e308))
     return false;
@@ -85,12 +87,12 @@ inline bool edgesAtOnce(Thread &T, const Site &S, bool Result, uint32_t Bits,
   return true;
 }
 
-/// Once in each process, before the first evaluation.
+/// Call once in each process, before the first evaluation.
 void prepareEdges();
 
-/// Begins a new period and gives the summaries of the old one to \p S; with
-/// \p All those of a period that has just begun, too (no reports are expected
-/// meanwhile, or they come into the next summaries).
+/// Begins a new period and passes the summaries of the old one to \p S. With
+/// \p All, also those of the period that has just begun; reports that arrive
+/// meanwhile go into the next summaries.
 void flushEdges(Sink &S, bool All);
 
 } // namespace tpc

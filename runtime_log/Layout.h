@@ -1,8 +1,8 @@
-//===- Layout.h - The binary file of reports, byte for byte ---------------===//
+//===- Layout.h - The layout of the binary file ---------------------------===//
 //
-// docs/reference/formats.md has it in words. Little endian; what was not
-// written is zero. `What` of a record is written last, so that a record that
-// has one is whole whenever the process ends.
+// docs/reference/formats.md describes it in words. Little endian; unwritten
+// bytes are zero. The field `What` of a record is written last, so that a
+// record with one is complete even if the process ends suddenly.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_LAYOUT_H
@@ -71,16 +71,16 @@ constexpr uint32_t bits(bool Result, bool Outcome) {
 struct Record {
   uint32_t What;
   uint32_t Site;
-  int64_t Steady; ///< of a site: the length of its key
+  int64_t Steady; ///< for a site: the length of its key
   union {
-    double Numbers[2]; ///< of a report: compared and threshold
+    double Numbers[2]; ///< for a report: compared value and threshold
     int64_t Integers[2];
     char Text[16];
   };
 };
 static_assert(sizeof(Record) == RecordBytes);
 
-/// A summary, and what of it is kept up to date in a live chunk.
+/// A summary, and the fields of it that are kept up to date in a live chunk.
 struct Summary {
   uint32_t What;
   uint32_t Site;

@@ -75,7 +75,7 @@ bool LogFile::simulated(Thread &T, int64_t Now) {
 Record *LogFile::systemRecords(uint32_t Count) {
   if (!SystemNext || SystemEnd - SystemNext < static_cast<ptrdiff_t>(Count)) {
     if (SystemNext) {
-      // What is left over counts as used: numbers say which place is which.
+      // The unused rest counts as used: the number of a record gives its place.
       SystemWritten += RecordsOfChunk;
       Space.finish(SystemEnd);
     }
@@ -116,7 +116,7 @@ void LogFile::announceLocked(Site &S) {
 void LogFile::sync() {
   std::lock_guard<std::mutex> Guard(SystemLock);
   if (Record *R = systemRecords(1)) {
-    // The two clocks at one instant.
+    // Both clocks at one instant.
     int64_t Before = Clock::now(), Real = Clock::real(), After = Clock::now();
     Space.header().Counter = Clock::usesCounter();
     put(*R, SyncRecord, 0, Before + (After - Before) / 2, Real, rosNow());

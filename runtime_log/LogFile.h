@@ -1,7 +1,7 @@
 //===- LogFile.h - The binary file of reports -----------------------------===//
 //
-// Records are written straight into the mapped file. Its layout is in Layout.h,
-// its space in Room.h, its name in NewFile.h.
+// Records are written directly into the mapped file. Layout.h defines its
+// layout, MappedFile.h manages its space, NewFile.h its name.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_LOGFILE_H
@@ -10,8 +10,8 @@
 #include "Clock.h"
 #include "Config.h"
 #include "Layout.h"
+#include "MappedFile.h"
 #include "Report.h"
-#include "Room.h"
 #include "Sites.h"
 #include "Threads.h"
 
@@ -21,16 +21,17 @@
 
 namespace tpc {
 
-/// Whether roscpp's time was simulated when last looked at.
+/// Whether roscpp's time was simulated when it was last checked.
 extern std::atomic<bool> TimeIsSimulated;
 
 class LogFile {
 public:
-  /// Makes a file in the folder of \p C; null, with \p Why, where that cannot
-  /// be. A file is never deleted: threads may write to it at any time.
+  /// Creates a file in the folder of \p C; if that fails, returns null and sets
+  /// \p Why. A file object is never deleted: threads may write to it at any
+  /// time.
   static LogFile *open(const Config &C, std::string &Why);
 
-  /// The same as write() where nothing stands in the way; else does nothing and
+  /// Writes one report if no slow path is needed; otherwise does nothing and
   /// returns false.
   bool writeAtOnce(Thread &T, const Site &S, uint32_t Bits, double Compared,
                    double Threshold) {
@@ -43,7 +44,7 @@ public:
     return true;
   }
 
-  /// Writes one report of the calling thread; false where the file takes no
+  /// Writes one report of the calling thread; false if the file accepts no
   /// more.
   bool write(Thread &T, Site &S, uint32_t Bits, double Compared,
              double Threshold) {
@@ -64,18 +65,18 @@ public:
   void write(const Summary &S);
   void write(const Dropped &D);
   void writePolicy(const Config &C);
-  /// The clocks against one another.
+  /// Records the two clocks against each other.
   void sync();
-  /// Two empty slots that are read where the process ends suddenly; null where
-  /// there is no room.
+  /// Two empty slots that can be read even if the process ends suddenly; null
+  /// if there is no space.
   SlotPair *newPair(Thread &T);
 
-  /// The helper thread's: makes room ahead, gives back what is full.
+  /// For the helper thread: allocates space ahead and releases what is full.
   void lookAhead() { Space.lookAhead(); }
   void setNode(const char *Name);
-  /// Whether it is stopped: disk full, or the limit reached.
+  /// Whether it has stopped because the disk is full or a limit is reached.
   bool isStopped() const { return Space.isStopped(); }
-  /// No more chunks are given out; what was not used is cut off.
+  /// No more chunks are given out; the unused end of the file is cut off.
   void close() { Space.close(); }
 
   const std::string &path() const { return Space.path(); }
@@ -103,13 +104,13 @@ private:
   bool simulated(Thread &T, int64_t Now);
   void announce(Site &S);
   void announceLocked(Site &S);
-  /// Room for \p Count records in a row in a system chunk; null where there is
+  /// Space for \p Count consecutive records in a system chunk; null if there is
   /// none. SystemLock is held.
   layout::Record *systemRecords(uint32_t Count);
 
-  Room Space;
+  MappedFile Space;
 
-  std::mutex SystemLock; ///< of the system's chunk and of pairs
+  std::mutex SystemLock; ///< for the system chunk and for pairs
   layout::Record *SystemNext = nullptr, *SystemEnd = nullptr;
   uint64_t SystemWritten = 0;
   char *LiveNext = nullptr, *LiveEnd = nullptr;

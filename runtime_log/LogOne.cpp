@@ -34,15 +34,15 @@ bool isOverCap(Site &S, bool IsFlop) {
   return true;
 }
 
-/// One report under caps.
+/// One report with caps in force.
 static void capped(Thread &T, Site &S, const Report &R) {
   int8_t Last = S.Last.exchange(R.Result, std::memory_order_relaxed);
   if (!isOverCap(S, Last >= 0 && Last != R.Result))
     emit(T, S, R, 0);
 }
 
-/// Says that the thread is inside of a report: a signal's handler, or code that
-/// is called from here, may report as well.
+/// Marks the thread as inside a report: a signal handler, or code that is
+/// called from here, may report too.
 static void enter(Thread &T, uint32_t Inside) {
   T.Inside.store(Inside + 1, std::memory_order_relaxed);
   std::atomic_signal_fence(std::memory_order_seq_cst);
@@ -67,8 +67,8 @@ static void report(Thread &T, const Report &R) {
     emit(T, *S, R, 0);
 }
 
-/// One report by a thread that is not cancelled meanwhile. (A function of its
-/// own: cancellation is an exception that its handlers must not see.)
+/// One report during which the thread cannot be cancelled. It is a function of
+/// its own because cancellation is an exception that its handlers must not see.
 [[gnu::noinline]] static void uncancelled(const char *Key, bool Result,
                                           double Cmp, double Thresh,
                                           bool Res) noexcept {
@@ -90,15 +90,15 @@ static void report(Thread &T, const Report &R) {
   }
 }
 
-/// Everything that may come in the way of the short way below. Files, the
-/// console and roscpp's locks are no place for a thread to end in: cancellation
-/// waits, for the places where the program itself expects it.
+/// Handles everything that the fast path below does not. A thread must not be
+/// cancelled while it uses files, the console or roscpp's locks, so
+/// cancellation waits until the program reaches its own cancellation points.
 [[gnu::noinline]] static void slowly(const char *Key, bool Result, double Cmp,
                                      double Thresh, bool Res) {
   int Cancelled;
   pthread_setcancelstate(PTHREAD_CANCEL_DISABLE, &Cancelled);
   uncancelled(Key, Result, Cmp, Thresh, Res);
-  // A thread that may be cancelled at any instruction ends here.
+  // If the thread may be cancelled at any instruction, it ends here.
   pthread_setcancelstate(Cancelled, nullptr);
 }
 

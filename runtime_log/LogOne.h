@@ -1,7 +1,7 @@
 //===- LogOne.h - What instrumented code calls ----------------------------===//
 //
-// The instrumentation inserts calls of log_one before predicates; this library
-// brings the reports to where they can be read.
+// The instrumentation inserts calls of log_one before predicates. This library
+// takes the reports to a place where they can be read.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_LOGONE_H
@@ -9,14 +9,14 @@
 
 /// Reports one evaluation of a threshold predicate comparison.
 ///
-/// \param key    the comparison's key, as in the static information
-/// \param result what the predicate came to
+/// \param key    the key of the comparison, as in the static information
+/// \param result the outcome of the predicate
 /// \param cmp    the value that was compared
 /// \param thresh the threshold that it was compared with
-/// \param res    what this comparison came to
+/// \param res    the outcome of this comparison
 ///
-/// Safe in any thread and before ros::init; never throws. Instrumented code may
-/// rely on it that none of the program's own variables is read or written here.
+/// Safe in any thread and before ros::init; never throws. Reads and writes none
+/// of the program's own variables: the compiler relies on that.
 __attribute__((visibility("default"))) void
 log_one(char *key, bool result, double cmp, double thresh, bool res);
 

@@ -1,4 +1,4 @@
-//===- Modes.h - What log_one looks at ------------------------------------===//
+//===- Modes.h - The state that log_one reads -----------------------------===//
 #ifndef TPC_MODES_H
 #define TPC_MODES_H
 
@@ -8,21 +8,21 @@
 
 #include <atomic>
 
-/// Whether reports are wanted: instrumented code looks at it before it calls
-/// log_one. Each program may have one of its own, weakly, that takes the place
-/// of the library's.
+/// Whether reports are wanted; instrumented code checks it before it calls
+/// log_one. A program may define its own, weakly, which replaces that of the
+/// library.
 extern "C" __attribute__((visibility("default"))) char tpc_reporting;
 
 namespace tpc {
 
-/// The few ways of log_one.
+/// The cases that log_one distinguishes.
 enum class Mode : uint8_t {
   NotStarted,
   Off,
-  FileEvery, ///< each evaluation to the file
+  FileEvery, ///< each evaluation, to the file
   Edges,
-  SinkEvery, ///< each evaluation to another sink
-  Capped     ///< each evaluation, as far as the caps go
+  SinkEvery, ///< each evaluation, to another sink
+  Capped     ///< each evaluation that the caps allow
 };
 
 extern std::atomic<Mode> NowMode;
@@ -33,22 +33,22 @@ extern std::atomic<bool> ReportsToFile;
 extern std::atomic<uint64_t> SiteCap, ProcessCap;
 extern Meter ProcessMeter;
 
-/// There from when the mode is another than NotStarted.
+/// Set before the mode changes from NotStarted.
 extern Sites *TheSites;
 inline Sites &sites() { return *TheSites; }
 
-/// Reads the settings and starts the helper thread, once in a process.
+/// Reads the settings and starts the helper thread, once per process.
 void startRuntime();
 
-/// Sends what waits and ends the helper thread, once in a process: at exit, or
-/// earlier where what it needs is about to go.
+/// Sends what is waiting and ends the helper thread, once per process: at exit,
+/// or earlier if something that it needs is about to be destroyed.
 void endRuntime();
 
-/// Whether the caps leave no room for one more report of \p S; then it is
-/// counted as dropped.
+/// Whether the caps forbid one more report of \p S; if so, it is counted as
+/// dropped.
 bool isOverCap(Site &S, bool IsFlop);
 
-/// Gives \p R to the chosen sink; \p Bits are those of the file's records.
+/// Passes \p R to the chosen sink; \p Bits are those of the records in a file.
 void emit(Thread &T, Site &S, const Report &R, uint32_t Bits);
 
 } // namespace tpc

@@ -47,7 +47,8 @@ std::string programPath() {
   return std::string(Buffer, std::max<ssize_t>(Length, 0));
 }
 
-/// What the file is called by: the node, else the program.
+/// The first part of the file name: the node, or the program if there is no
+/// node.
 static std::string nameOfProcess() {
   std::string Name = rosNodeName();
   if (Name.empty()) {
@@ -74,8 +75,8 @@ std::optional<NewFile> NewFile::create(const Config &C, std::string &Why) {
   for (int Try = 1;; ++Try) {
     std::string Path =
         Stem + (Try > 1 ? "-" + std::to_string(Try) : "") + ".tpc";
-    // Processes in two containers can have the same number, and so the same
-    // path: whoever creates the temporary file first has it.
+    // Processes in two containers can have the same number and so the same
+    // path. The process that creates the temporary file first gets it.
     std::string New = Path + ".new";
     int Descriptor =
         open(New.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);

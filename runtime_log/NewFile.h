@@ -1,8 +1,8 @@
-//===- NewFile.h - A file of reports that is being made -------------------===//
+//===- NewFile.h - Creates a file of reports ------------------------------===//
 //
-// Where the file goes and what it is called: the folder that the settings name,
-// then the node or the program, the process and the time. The file has its name
-// only once it can be read.
+// Where the file is created and what it is called: the folder in the settings,
+// then the node or the program, the process and the time. The file gets its
+// final name only once it can be read.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_NEWFILE_H
@@ -19,10 +19,10 @@ struct NewFile {
   std::string Path;
   int Descriptor;
 
-  /// Makes an empty file, which is called `Path.new` for now, in the folder of
-  /// \p C; none, with \p Why, where that cannot be.
+  /// Creates an empty file in the folder of \p C, with `.new` behind its name
+  /// for now; if that fails, returns none and sets \p Why.
   static std::optional<NewFile> create(const Config &C, std::string &Why);
-  /// Gives it its name; false, with \p Why, where that cannot be.
+  /// Gives it its final name; if that fails, returns false and sets \p Why.
   bool publish(std::string &Why) const;
   /// Deletes and closes it instead.
   void discard() const;
@@ -31,7 +31,7 @@ struct NewFile {
 /// The text of \p Error, an errno.
 std::string errorText(int Error);
 
-/// The path of the running program; empty where it is not known.
+/// The path of the running program; empty if it is not known.
 std::string programPath();
 
 } // namespace tpc

@@ -1,4 +1,4 @@
-//===- Report.h - What is reported, and its text --------------------------===//
+//===- Report.h - Reports, and their text ---------------------------------===//
 #ifndef TPC_REPORT_H
 #define TPC_REPORT_H
 
@@ -17,14 +17,14 @@ struct Report {
 };
 
 /// What the policy `edges` keeps of all evaluations of one site in one thread
-/// and period. Diff is compared minus threshold; an evaluation where that is
-/// not finite is in Count, Flops and Odd alone.
+/// and period. Diff is compared minus threshold; if it is not finite, an
+/// evaluation only counts in Count, Flops and Odd.
 struct Summary {
   const char *Key;
   uint32_t Site;
   uint32_t Thread;
   uint32_t Period;
-  bool Result; ///< this and the next three are of the last evaluation
+  bool Result; ///< this and the next three belong to the last evaluation
   bool Outcome;
   double Compared;
   double Threshold;
@@ -35,23 +35,23 @@ struct Summary {
   double DiffMin, DiffMax, DiffSum;
   double AbsSum;    ///< of |Diff|
   double Low, High; ///< of all compared values and thresholds
-  /// The span in which all the evaluations lie, in nanoseconds.
+  /// The span that contains all evaluations, in nanoseconds.
   int64_t BeginSteady, EndSteady;
   int64_t BeginRos, EndRos;
 };
 
-/// Why a report was not made.
+/// Why a report was dropped.
 enum class DropReason : uint8_t {
   SiteCap = 1,
   ProcessCap = 2,
-  Nested = 3, ///< from within another report in the same thread
-  Stopped = 4 ///< its sink takes no more
+  Nested = 3, ///< made inside another report of the same thread
+  Stopped = 4 ///< its sink accepts no more
 };
 
 const char *text(DropReason R);
 
-/// Reports of a site that were not made since the last such account of it. Key
-/// is empty where it is not known of which.
+/// The reports of a site that were dropped since the previous Dropped for it.
+/// Key is empty if the site is not known.
 struct Dropped {
   const char *Key;
   uint32_t Site;
@@ -60,7 +60,7 @@ struct Dropped {
   DropReason Why;
 };
 
-/// `KEY,RESULT,cmp:C,thresh:T,res:R` (docs/reference/formats.md). Numbers are
+/// `KEY,RESULT,cmp:C,thresh:T,res:R` (docs/reference/formats.md). A number is
 /// the shortest text that reads back as the same double.
 std::string format(const Report &R);
 
@@ -71,7 +71,7 @@ std::string format(const Summary &S);
 /// `KEY,count:N,flops:F,why:W`.
 std::string format(const Dropped &D);
 
-/// `S.FFFFFFF` of nanoseconds: seconds with so many decimals, cut off.
+/// \p Ns nanoseconds as seconds with \p Decimals decimals, truncated.
 std::string seconds(int64_t Ns, int Decimals);
 
 } // namespace tpc

@@ -1,4 +1,4 @@
-//===- Runtime.cpp - What is chosen, and the helper thread ----------------===//
+//===- Runtime.cpp - The chosen settings, and the helper thread -----------===//
 #include "Runtime.h"
 
 #include "Edges.h"
@@ -16,14 +16,14 @@
 namespace tpc {
 
 static constexpr int64_t Second = 1'000'000'000;
-static constexpr int64_t TurnNs = 20'000'000;
+static constexpr int64_t PollNs = 20'000'000;
 static constexpr int64_t Never = INT64_MAX;
-/// Until the counter's rate is known well enough to be used.
+/// Until then the rate of the counter is not known well enough to use it.
 static constexpr int64_t FirstAdjustNs = 10'000'000;
 static constexpr int64_t Jump = 1'000'000;
 
 //===----------------------------------------------------------------------===//
-// What log_one looks at
+// The state that log_one reads
 //===----------------------------------------------------------------------===//
 
 std::atomic<Mode> NowMode{Mode::NotStarted};
@@ -36,7 +36,7 @@ Meter ProcessMeter;
 
 namespace {
 
-/// The file's place among the sinks.
+/// Represents the file among the sinks.
 class FileSink final : public Sink {
 public:
   void take(const Report &) override {} // log_one writes these itself
@@ -57,7 +57,7 @@ public:
   void take(const Dropped &) override {}
 };
 
-/// All that changes seldom, and the helper thread.
+/// Everything that seldom changes, and the helper thread.
 class Runtime {
 public:
   static Runtime &of() {
@@ -83,36 +83,35 @@ private:
   bool needsFile(const Config &C);
   void startHelper();
   void help();
-  int64_t turn(int64_t Now);
+  int64_t runDue(int64_t Now);
   void eachSecond();
   void accountForDrops();
 
-  std::mutex Changing; ///< of all that follows
+  std::mutex Changing; ///< for everything that follows
   Config Held;
   bool IsStarted = false;
-  bool HasSettings =
-      false; ///< Held is what was read or set, maybe before a fork
+  bool HasSettings = false; ///< Held was read or set, perhaps before a fork
   bool HelperRuns = false;
   pthread_t Helper{};
 
-  std::mutex Waiting; ///< of the next three
+  std::mutex Waiting; ///< for the next three
   std::condition_variable Wake;
   bool IsAwake = false;
   bool IsEnding = false;
 
-  // The helper's own.
-  int64_t NextRos = 0, NextTurn = 0, NextPeriod = 0, NextSecond = 0;
+  // Used by the helper only.
+  int64_t NextRos = 0, NextPoll = 0, NextPeriod = 0, NextSecond = 0;
   int64_t RealOffset = 0;
   std::atomic<uint64_t> DroppedInAll{0};
 };
 
 Runtime::Runtime() {
-  // Never destroyed, as this object: threads report until the process is gone.
+  // Never destroyed, like this object: threads report until the process ends.
   TheSites = new Sites;
   pthread_atfork([] { of().beforeFork(); }, [] { of().afterFork(false); },
                  [] { of().afterFork(true); });
-  // Handlers run in the reverse order of their registration, so that this one
-  // runs before what the program has made until now is destroyed.
+  // Handlers run in the reverse order of their registration, so this one runs
+  // before anything that exists now is destroyed.
   std::atexit([] { of().end(); });
 }
 
@@ -138,20 +137,20 @@ void Runtime::start() {
     return;
   TimeIsSimulated = rosTimeIsSimulated();
   prepareEdges();
-  // A forked child goes on with what its parent was set to, and has its clock.
+  // A forked child keeps the settings of its parent, and its clock.
   if (!HasSettings) {
-    // Not by the helper: a fork waits for this lock, and so never comes
+    // Not in the helper: a fork waits for this lock, so it never comes in
     // between.
     Clock::prepare();
     Held = configOfEnvironment();
   }
   HasSettings = true;
   if (!choose(Held)) {
-    // Its warning was given; a ROS parameter may say another folder.
+    // The warning has been given; a ROS parameter may name another folder.
     Held.Sink = SinkKind::Off;
     choose(Held);
   }
-  // Not before: without memory the next report tries again.
+  // Only now: if memory ran out, the next report tries again.
   IsStarted = true;
   startHelper();
 }
@@ -162,7 +161,7 @@ bool Runtime::needsFile(const Config &C) {
          C.FileLimitMiB != Held.FileLimitMiB;
 }
 
-/// Makes \p C what log_one does; false where its file cannot be had.
+/// Makes log_one follow \p C; false if its file cannot be created.
 bool Runtime::choose(const Config &C) {
   if (C.Sink == SinkKind::File) {
     if (needsFile(C)) {
@@ -200,7 +199,7 @@ bool Runtime::apply(const Config &C) {
   std::lock_guard<std::mutex> Guard(Changing);
   if (C == Held)
     return true;
-  // What `edges` has kept until now goes where it was meant to go.
+  // What `edges` has kept so far goes to the old sink.
   if (Held.Policy == Policy::Edges && Held.Sink != SinkKind::Off)
     flushEdges(*NowSink.load(), /*All=*/true);
   if (!choose(C))
@@ -251,8 +250,8 @@ void Runtime::startHelper() {
   if (HelperRuns)
     pthread_setname_np(Helper, "tpc");
   else
-    warn("no thread could be made: settings cannot be changed while it runs, "
-         "and summaries are written at its end");
+    warn("cannot start a thread: settings cannot be changed while the program "
+         "runs, and summaries are written when it ends");
   pthread_sigmask(SIG_SETMASK, &Old, nullptr);
 }
 
@@ -265,7 +264,7 @@ void Runtime::wake() {
 }
 
 void Runtime::help() {
-  NextRos = NextTurn = NextPeriod = NextSecond = 0;
+  NextRos = NextPoll = NextPeriod = NextSecond = 0;
   Clock::adjust();
   int64_t Next = Clock::steady() + FirstAdjustNs;
   for (;;) {
@@ -275,7 +274,7 @@ void Runtime::help() {
       if (Next == Never)
         Wake.wait(Guard, Done);
       else
-        // Steady time: a wall clock that is set must not stop the periods.
+        // Steady time: setting the wall clock must not stop the periods.
         Wake.wait_until(Guard,
                         std::chrono::steady_clock::time_point(
                             std::chrono::nanoseconds(Next)),
@@ -286,18 +285,19 @@ void Runtime::help() {
         NextRos = 0;
       IsAwake = false;
     }
-    Next = turn(Clock::steady());
+    Next = runDue(Clock::steady());
   }
 }
 
-/// Does what is due at \p Now; returns when something is due next.
-int64_t Runtime::turn(int64_t Now) {
-  // roscpp calls back into apply(): no lock is held.
+/// Does what is due at \p Now; returns when the next thing is due.
+int64_t Runtime::runDue(int64_t Now) {
+  // No lock is held, because roscpp calls back into apply().
   if (Now >= NextRos) {
-    int64_t After = forkedFromNode() ? -1 : rosTurn();
+    int64_t After = forkedFromNode() ? -1 : pollRos();
     NextRos = After < 0 ? Never : Now + After;
   }
-  // roscpp finds out after it looks as if it were up, and a program may set it.
+  // roscpp knows it only some time after its start, and a program may change
+  // it.
   TimeIsSimulated = rosTimeIsSimulated();
   std::lock_guard<std::mutex> Guard(Changing);
   LogFile *File = Held.Sink == SinkKind::File ? NowFile.load() : nullptr;
@@ -317,10 +317,10 @@ int64_t Runtime::turn(int64_t Now) {
       NextPeriod = Now + Held.PeriodNs;
   }
   Sink &S = *NowSink.load();
-  bool WantsTurns = S.wantsTurns();
-  if (WantsTurns && Now >= NextTurn) {
-    S.turn();
-    NextTurn = Now + TurnNs;
+  bool IsPolled = S.isPolled();
+  if (IsPolled && Now >= NextPoll) {
+    S.poll();
+    NextPoll = Now + PollNs;
   }
   bool HasSeconds = File || IsEdges || SiteCap || ProcessCap;
   if (HasSeconds && Now >= NextSecond) {
@@ -330,8 +330,8 @@ int64_t Runtime::turn(int64_t Now) {
   int64_t Next = NextRos;
   if (IsEdges)
     Next = std::min(Next, NextPeriod);
-  if (WantsTurns)
-    Next = std::min(Next, NextTurn);
+  if (IsPolled)
+    Next = std::min(Next, NextPoll);
   if (HasSeconds)
     Next = std::min(Next, NextSecond);
   return Next;
@@ -375,12 +375,12 @@ void Runtime::end() {
   }
   Wake.notify_one();
   if (HelperRuns) {
-    // It may be waiting for a ROS master that is gone.
+    // It may be waiting for a ROS master that no longer answers.
     timespec Until;
     clock_gettime(CLOCK_REALTIME, &Until);
     Until.tv_sec += 2;
     if (pthread_timedjoin_np(Helper, nullptr, &Until)) {
-      // The file needs nobody.
+      // The file needs no helper.
       if (LogFile *F = NowFile.load())
         F->close();
       return;
@@ -418,8 +418,8 @@ void Runtime::afterFork(bool IsChild) {
   Changing.unlock();
   if (!IsChild)
     return;
-  // Of all threads only this one is left. The file is the parent's; the first
-  // report makes another one, and another helper.
+  // Only this thread is left. The file belongs to the parent; the first report
+  // creates a new one, and a new helper.
   new (&Wake) std::condition_variable;
   threadsAfterFork();
   sites().afterFork();
@@ -436,7 +436,7 @@ void Runtime::afterFork(bool IsChild) {
 } // namespace
 
 //===----------------------------------------------------------------------===//
-// The entrances
+// Entry points
 //===----------------------------------------------------------------------===//
 
 Config current() { return Runtime::of().current(); }
@@ -447,7 +447,7 @@ void startRuntime() { Runtime::of().start(); }
 void endRuntime() { Runtime::of().end(); }
 
 void warn(const std::string &Text) {
-  // One write: lines of several processes do not mix.
+  // A single write, so that lines of several processes do not mix.
   std::string Line = "tpc: " + Text + "\n";
   if (::write(STDERR_FILENO, Line.data(), Line.size()) < 0)
     return;

@@ -1,4 +1,4 @@
-//===- Runtime.h - What is chosen, and the helper thread ------------------===//
+//===- Runtime.h - The chosen settings, and the helper thread -------------===//
 #ifndef TPC_RUNTIME_H
 #define TPC_RUNTIME_H
 
@@ -6,20 +6,20 @@
 
 namespace tpc {
 
-/// What holds now.
+/// The settings in force.
 Config current();
 
-/// Makes \p C hold, from any thread. A sink that cannot be had (no file) gets a
-/// warning and what held before holds on; returns whether it holds.
+/// Applies \p C, from any thread. If the sink is not available (no file), logs
+/// a warning and keeps the previous settings; returns whether \p C is applied.
 bool apply(const Config &C);
 
 /// `sink=file policy=edges reports=123 dropped=0 file=...`: one line.
 std::string statusLine();
 
-/// Has the helper thread look at everything at once. From any thread.
+/// Makes the helper thread check everything at once. From any thread.
 void wakeHelper();
 
-/// One line on standard error, behind `tpc: `.
+/// Writes one line to standard error: `tpc: ` and \p Text.
 void warn(const std::string &Text);
 
 } // namespace tpc

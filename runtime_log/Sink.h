@@ -6,15 +6,15 @@
 
 namespace tpc {
 
-/// Takes what is reported. There is one of each kind in a process, for ever: it
-/// may be chosen, left and chosen again, and threads may still be inside take()
-/// when it was left. No call ever comes from within another one in the same
-/// thread.
+/// Takes reports. There is one of each kind in a process, and it is never
+/// destroyed. A sink may be chosen, left and chosen again, and threads may
+/// still be inside take() after it was left. In one thread, a call never comes
+/// from within another call.
 class Sink {
 public:
   virtual ~Sink() = default;
 
-  /// One report; from any thread, many at once.
+  /// One report; from any thread, concurrently.
   virtual void take(const Report &R) = 0;
 
   /// From the helper thread, or from the thread that ends the process.
@@ -22,22 +22,24 @@ public:
   virtual void take(const Dropped &D) = 0;
 
   /// From the helper thread, about every 20 ms while this is the chosen sink.
-  virtual void turn() {}
+  virtual void poll() {}
 
-  /// Whether turn() has anything to do: where not, the helper thread sleeps.
-  virtual bool wantsTurns() const { return false; }
+  /// Whether poll() has anything to do. If not, the helper thread may sleep.
+  virtual bool isPolled() const { return false; }
 
-  /// The sink was left, or the process ends: what waits is sent now.
+  /// The sink was left, or the process ends: sends what is waiting.
   virtual void end() {}
 
-  /// For the status line: what a user wants to know of it, e.g. `file=PATH`.
+  /// For the status line: what a user wants to know about it, such as
+  /// `file=PATH`.
   virtual std::string status() const { return ""; }
 };
 
-/// The thesis's: one ROS_INFO line a report, which appears on /rosout.
+/// The sink of the thesis: one ROS_INFO line per report, which appears on
+/// /rosout.
 Sink &rosoutSink();
 
-/// Batches on /threshold_information.
+/// Sends batches on /threshold_information.
 Sink &topicSink();
 
 } // namespace tpc

@@ -66,7 +66,7 @@ void Sites::bind(const char *Key, Site &S) {
     }
   };
   if (!T || (Bound + 1) * 2 > T->Mask + 1) {
-    // A reader may be in the old table, which is therefore kept: all of them
+    // A reader may still use the old table, so it is kept. All old tables
     // together are smaller than the new one.
     uint64_t Entries = T ? (T->Mask + 1) * 2 : 1024;
     auto *Larger = new Table{Entries - 1, new Entry[Entries]};

@@ -14,28 +14,30 @@ namespace tpc {
 
 class LogFile;
 
-/// Reports of this second, against a cap.
+/// Counts the reports of the current second against a cap.
 class Meter {
 public:
-  /// Whether one more fits below \p Cap (0: none) in the second of \p Ns.
+  /// Whether one more report in the second of \p Ns stays within \p Cap (0: no
+  /// cap).
   bool takes(uint64_t Cap, int64_t Ns);
 
 private:
-  /// The second in the upper half, the reports made in it in the lower.
+  /// The second in the upper half, the number of reports in it in the lower
+  /// half.
   std::atomic<uint64_t> Used{0};
 };
 
-/// What was dropped since the last account.
+/// What was dropped since it was last reported.
 struct DropCount {
   std::atomic<uint64_t> Count{0};
   std::atomic<uint64_t> Flops{0};
 };
 
-/// One key. Sites live as long as the process.
+/// One key. Sites are never destroyed.
 struct Site {
   Site(std::string Text, uint32_t Number);
 
-  /// Whether \p Address still has the key that it had when it was found.
+  /// Whether the key that was found at \p Address is still there.
   bool isAt(const char *Address) const {
     if (__builtin_expect(IsShort, 0))
       return Key == Address;
@@ -44,39 +46,39 @@ struct Site {
     return There[0] == Head[0] && There[1] == Head[1];
   }
 
-  uint64_t Head[2] = {0, 0}; ///< the key's first 16 bytes
-  /// The file in which the key stands under its number.
+  uint64_t Head[2] = {0, 0}; ///< the first 16 bytes of the key
+  /// The file that contains the key under its number.
   std::atomic<const LogFile *> WrittenTo{nullptr};
   const uint32_t Number; ///< from 1
-  const bool IsShort;    ///< the key has no 16 bytes
-  /// What the predicate came to last: -1 before the first evaluation.
+  const bool IsShort;    ///< the key has fewer than 16 bytes
+  /// The last outcome of the predicate: -1 before the first evaluation.
   std::atomic<int8_t> Last{-1};
   const std::string Key;
-  std::mutex Lock; ///< held where Last changes
+  std::mutex Lock; ///< held while Last changes
   Meter Used;
   DropCount OverSiteCap, OverProcessCap;
 };
 
-/// Finds sites by the address of their key, and by its text where the address
-/// is new. Finding takes no lock, making does.
+/// Finds sites by the address of the key, or by its text if the address is new.
+/// Finding takes no lock, creating does.
 class Sites {
 public:
   static constexpr uint32_t Most = 1U << 22;
 
-  /// The site of \p Key, made where it is new; null beyond Most sites.
+  /// The site of \p Key, created if it is new; null beyond Most sites.
   Site *find(const char *Key) {
     Site *S = known(Key);
     return S ? S : make(Key);
   }
 
-  /// The site of \p Key where it was found at this address before, else null.
+  /// The site of \p Key if it was found at this address before; otherwise null.
   Site *known(const char *Key) const {
     if (const Table *T = Current.load(std::memory_order_acquire))
       for (uint64_t I = hash(Key);; ++I) {
         const Entry &E = T->Entries[I & T->Mask];
         const char *There = E.Key.load(std::memory_order_acquire);
         if (There == Key) {
-          // A library that was unloaded leaves its address to another one.
+          // After a library is unloaded, another may be loaded at its address.
           Site *S = E.Found.load(std::memory_order_acquire);
           if (__builtin_expect(S->isAt(Key), 1))
             return S;
@@ -93,13 +95,13 @@ public:
         std::memory_order_acquire)[(Number - 1) % BlockSize];
   }
 
-  /// How many there are; their numbers begin with 1.
+  /// The number of sites; their numbers begin with 1.
   uint32_t size() const { return Size.load(std::memory_order_acquire); }
 
-  /// Around a fork.
+  /// Call before and after a fork.
   void lock() { Making.lock(); }
   void unlock() { Making.unlock(); }
-  /// In the child: what other threads held is free.
+  /// Call in the child: releases what other threads held.
   void afterFork();
 
 private:

@@ -17,7 +17,8 @@ struct Registry {
   std::vector<Thread *> All;
   std::vector<Thread *> Free;
   pthread_key_t Key;
-  /// Where a program has used up all keys, no thread takes another's place.
+  /// If a program has used up all keys, threads do not reuse each other's
+  /// place.
   bool HasKey;
 
   Registry() {
@@ -28,7 +29,7 @@ struct Registry {
     });
   }
 
-  /// Never destroyed: threads report until the process is gone.
+  /// Never destroyed: threads report until the process ends.
   static Registry &of() {
     static auto *R = new Registry;
     return *R;
@@ -71,7 +72,7 @@ void threadsAfterFork() {
   R.Free.clear();
   for (Thread *T : R.All) {
     new (&T->Lock) std::mutex;
-    // Chunks and slots are the parent's: it goes on writing them.
+    // Chunks and slots belong to the parent, which continues to write them.
     T->Next = T->End = nullptr;
     T->File = nullptr;
     T->PairsHome = nullptr;

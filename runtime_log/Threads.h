@@ -1,4 +1,4 @@
-//===- Threads.h - What each reporting thread has of its own --------------===//
+//===- Threads.h - The state of each reporting thread ---------------------===//
 #ifndef TPC_THREADS_H
 #define TPC_THREADS_H
 
@@ -13,50 +13,52 @@ namespace tpc {
 
 class LogFile;
 
-/// The two slots of a site in one thread: even and odd periods take turns, so
-/// that one is read while the other is written.
+/// The two slots of a site in one thread, for even and odd periods: one is read
+/// while the other is written.
 struct SlotPair {
   layout::Slot Of[2];
 };
 
-/// A thread that reports. When it ends, the next new one takes its place.
+/// A thread that reports. When it ends, the next new thread reuses its place.
 struct Thread {
-  /// Where its next report stands in the file's chunk, and the chunk's end.
+  /// Where its next report goes in the chunk of the file, and where the chunk
+  /// ends.
   layout::Record *Next = nullptr;
   layout::Record *End = nullptr;
-  /// The file that these are in.
+  /// The file that contains both.
   LogFile *File = nullptr;
-  /// Odd while it reports.
+  /// Odd while the thread reports.
   std::atomic<uint32_t> Inside{0};
   uint32_t Number = 0;    ///< from 1
-  int64_t Simulated = -1; ///< the last simulated time in the file
+  int64_t Simulated = -1; ///< the last simulated time written to the file
   uint64_t Written = 0;   ///< records in the chunks before this one
   std::atomic<uint64_t> Nested{0};
 
-  /// By the site's number; what `edges` keeps.
+  /// Indexed by the number of the site; used by `edges`.
   SlotPair **Pairs = nullptr;
   uint32_t PairCount = 0;
-  const LogFile *PairsHome = nullptr; ///< the file they are in; null: memory
+  const LogFile *PairsHome =
+      nullptr; ///< the file that contains them; null: memory
   uint64_t Tid = 0;
-  /// The slots with something in them, of even and of odd periods.
+  /// The slots in use, of even and of odd periods.
   std::vector<layout::Slot *> Touched[2];
-  std::mutex Lock; ///< of Touched
+  std::mutex Lock; ///< for Touched
 };
 
-/// The calling thread's; makes it at its first report. Null while the thread
-/// is inside of this function already.
+/// The calling thread; creates it at its first report. Null while the thread is
+/// already inside this function.
 Thread *makeThread();
 
-/// Of the calling thread; null before its first report. (`__thread`: no
-/// initialisation is looked for at each access.)
+/// The calling thread; null before its first report. `__thread`: an access does
+/// not check for initialisation.
 extern __thread Thread *ThisThread __attribute__((tls_model("initial-exec")));
 
-/// Calls \p Do with every thread there ever was.
+/// All threads that ever reported.
 std::vector<Thread *> allThreads();
 
 void lockThreads();
 void unlockThreads();
-/// In the child of a fork, where only the calling thread goes on.
+/// In the child of a fork, where only the calling thread exists.
 void threadsAfterFork();
 
 } // namespace tpc

@@ -8,17 +8,18 @@ namespace tpc {
 
 static constexpr size_t MostBlocks = 16;
 static constexpr uint32_t BlockEntries = 4096;
-/// A block ends here even with few entries, so that long keys have a bound.
+/// A block ends here even with few entries, so that long keys cannot make it
+/// large.
 static constexpr size_t BlockBytes = 512 * 1024;
 
-/// Before each entry in a block. Behind it stand the key with its NUL and, for
-/// a summary, the rest of its text.
+/// Stands before each entry in a block. The key with its NUL follows and, for a
+/// summary, the rest of its text.
 namespace {
 struct Head {
   int64_t Ns;
   double Compared, Threshold;
-  uint64_t Evaluations; ///< of a summary
-  uint32_t Length;      ///< of all that follows
+  uint64_t Evaluations; ///< for a summary
+  uint32_t Length;      ///< of everything that follows
   bool Guessed, IsReport, Result, Outcome;
 };
 } // namespace
@@ -35,7 +36,7 @@ template <typename F> static void forEach(const TopicStore::Block &B, F Visit) {
   }
 }
 
-char *TopicStore::room(size_t Length) {
+char *TopicStore::allocate(size_t Length) {
   if (Blocks.empty() || Blocks.back().Entries >= BlockEntries ||
       Blocks.back().Data.size() >= BlockBytes) {
     if (Blocks.size() == MostBlocks)
@@ -61,7 +62,7 @@ void TopicStore::add(Time When, const Report &R) {
                true,
                R.Result,
                R.Outcome};
-  char *To = room(sizeof(H) + KeyBytes);
+  char *To = allocate(sizeof(H) + KeyBytes);
   std::memcpy(To, &H, sizeof(H));
   std::memcpy(To + sizeof(H), R.Key, KeyBytes);
 }
@@ -78,7 +79,7 @@ void TopicStore::add(Time When, const Summary &S) {
                false,
                S.Result,
                S.Outcome};
-  char *To = room(sizeof(H) + H.Length);
+  char *To = allocate(sizeof(H) + H.Length);
   std::memcpy(To, &H, sizeof(H));
   std::memcpy(To + sizeof(H), S.Key, KeyBytes);
   std::memcpy(To + sizeof(H) + KeyBytes, Text.data(), Text.size());
@@ -90,14 +91,14 @@ void TopicStore::add(const Dropped &D) {
 
 void TopicStore::account(std::string Key, DropReason Why, uint64_t Count,
                          uint64_t Flops) {
-  auto &[Counted, Turned] = Accounts[{std::move(Key), Why}];
+  auto &[Counted, CountedFlops] = Accounts[{std::move(Key), Why}];
   Counted += Count;
-  Turned += Flops;
+  CountedFlops += Flops;
   DroppedInAll += Count;
 }
 
-/// Makes room: the oldest block goes. Of flops those are counted that can be
-/// seen among the reports that went.
+/// Drops the oldest block to make space. Of the flops in it, those are counted
+/// that the dropped reports show.
 void TopicStore::evict() {
   const Block Oldest = std::move(Blocks.front());
   Blocks.pop_front();

@@ -1,7 +1,7 @@
-//===- TopicStore.h - What waits to be sent on the topic ------------------===//
+//===- TopicStore.h - Reports that wait for the topic ---------------------===//
 //
-// No ROS in here: bytes in, text out. The lines are those of
-// docs/reference/formats.md.
+// Does not depend on ROS: bytes in, text out. docs/reference/formats.md defines
+// the lines.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_TOPICSTORE_H
@@ -17,17 +17,18 @@
 
 namespace tpc {
 
-/// Keeps reports and summaries in order, the newest 65,536 of them in blocks of
-/// 4,096; what makes room for others is counted for each key.
+/// Keeps reports and summaries in order: the newest 65,536 in blocks of 4,096.
+/// What is dropped to make space is counted for each key.
 class TopicStore {
 public:
-  /// ROS time. Guessed: the wall's, before it was known which time holds.
+  /// ROS time. Guessed: wall time, taken before it was known which time the
+  /// node uses.
   struct Time {
     int64_t Ns;
     bool Guessed;
   };
 
-  /// One message's lines, and how many of them are reports.
+  /// The lines of one message, and how many of them are reports.
   struct Lines {
     std::string Text;
     uint64_t Reports = 0;
@@ -44,22 +45,25 @@ public:
     uint32_t Entries = 0;
   };
 
-  /// What was in a store, to be made into text without holding its lock.
+  /// The contents of a store, taken out so that they can be formatted without
+  /// its lock.
   struct Batch {
     std::deque<Block> Blocks;
     std::map<std::pair<std::string, DropReason>, std::pair<uint64_t, uint64_t>>
         Accounts;
-    uint64_t DroppedInAll = 0; ///< since the store was made
+    uint64_t DroppedInAll = 0; ///< since the store was created
   };
 
-  /// Hands out all that waits; the store is empty then, its counts go on.
+  /// Takes out everything that is waiting; the store is then empty, but its
+  /// counts continue.
   Batch takeAll();
 
-  /// Counts all that waits as dropped; returns how many evaluations those are.
+  /// Counts everything that is waiting as dropped; returns the number of
+  /// evaluations.
   uint64_t giveUp();
 
 private:
-  char *room(size_t Length);
+  char *allocate(size_t Length);
   void account(std::string Key, DropReason Why, uint64_t Count, uint64_t Flops);
   void evict();
 

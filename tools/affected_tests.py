@@ -1,9 +1,9 @@
-"""Names the Python tests that a change reaches, nearest first: what `make check` runs.
+"""Lists the Python tests that a change reaches, nearest first; `make check` runs them.
 
-What changed is what differs from the merge base with main, committed or not. grimp reads which
-module of the product imports which; the imports of tests, and the modules and files that they name
-in a string, are read here. A test is as far from a changed module as the shortest chain of imports.
-The answer depends on the files alone: there is no database, and nothing is run.
+A file has changed if it differs from the merge base with main, committed or not. grimp reads which
+module of the product imports which. This module reads the imports of tests, and the modules and
+files that tests name in a string. The distance of a test from a changed module is the shortest
+chain of imports. The answer depends only on the files: there is no database, and nothing is run.
 """
 
 from __future__ import annotations
@@ -20,20 +20,20 @@ import grimp
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("pytpc", "pytpc_evaluation")
-# tests/ros builds workspaces and starts graphs, minutes each: `make test` runs those.
+# Tests in tests/ros build workspaces and start graphs, which takes minutes: `make test` runs them.
 TEST_FOLDERS = ("tests/python", "tests/runtime")
 # Where an `import` in a test looks first (pytest's `pythonpath`, and the test's own folder).
 HELPER_FOLDERS = ("tests", "tools")
-# C++ that tests compile, besides what lit tests.
+# C++ that Python tests compile; lit tests the rest.
 TESTED_BY = {"runtime_log/": "tests/runtime/test_"}
 LONGEST_NAME = 100
 MOST = 25
-"""So many test files take about a minute on two cores."""
+"""This many test files take about a minute on two cores."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Chosen:
-    """A test file that a change reaches: over how many imports, and from which changed file."""
+    """A test file that a change reaches: by how many imports, and from which changed file."""
 
     distance: int
     breadth: int
@@ -43,7 +43,7 @@ class Chosen:
 
 @dataclass(frozen=True, slots=True)
 class Names:
-    """What a Python file refers to: modules that it imports, the words of its strings, fixtures.
+    """What a Python file refers to: imported modules, the words of its strings, fixtures.
 
     ``functions`` are those that it defines, ``arguments`` the names of what its functions take: a
     test takes a fixture of a conftest.py by that name.
@@ -81,7 +81,7 @@ def names_in(text: str) -> Names:
 
 
 def importers(edges: Mapping[str, set[str]]) -> dict[str, set[str]]:
-    """The same edges backwards: for each file those that refer to it."""
+    """The edges reversed: for each file, the files that refer to it."""
     backwards: dict[str, set[str]] = {}
     for file, targets in edges.items():
         for target in targets:
@@ -92,7 +92,7 @@ def importers(edges: Mapping[str, set[str]]) -> dict[str, set[str]]:
 def distances(
     starts: Iterable[str], backwards: Mapping[str, set[str]]
 ) -> dict[str, tuple[int, str]]:
-    """For each file that the changed ones reach the number of steps, and the changed file."""
+    """For each reached file, the number of steps and the changed file that reaches it."""
     found = {start: (0, start) for start in sorted(starts)}
     row = list(found)
     while row:
@@ -108,10 +108,10 @@ def distances(
 
 
 class Tree:
-    """The files of a checkout, and which refers to which."""
+    """The files of a checkout, and which file refers to which."""
 
     def __init__(self, root: Path, files: Iterable[str], packages: Iterable[str]) -> None:
-        """``files`` are relative to ``root``; those that are no more are left out."""
+        """``files`` are relative to ``root``; deleted files are ignored."""
         self.root = root
         self.folders = tuple(f"{top}{name}/" for name in packages for top in ("", "evaluation/"))
         self.files = sorted(file for file in files if (root / file).is_file())
@@ -180,7 +180,7 @@ class Tree:
                 yield conftest
 
     def _name_files(self) -> None:
-        """What is no module is referred to by its path, its name, or a folder that it is in."""
+        """Other files are referred to by path, by name, or by a folder that contains them."""
         by_word: dict[str, list[str]] = {}
         for file in self.files:
             if file not in self.names:
@@ -197,7 +197,7 @@ class Tree:
         self._keep_unnamed()
 
     def _keep_unnamed(self) -> None:
-        """A data file of the product that nobody names is used by the modules of its package."""
+        """The modules of a package use its data files that no module names."""
         named = set().union(*self.edges.values())
         for file in self.files:
             if file in self.names or file in named:
@@ -240,10 +240,12 @@ def merge_base(branch: str | None) -> str:
 
 
 def main() -> int:
-    """Print the tests on standard output, one a line, and why on standard error."""
+    """Print the tests on standard output, one per line, and the reasons on standard error."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--base", metavar="BRANCH", help="Compare with it instead of main.")
-    parser.add_argument("--most", type=int, default=MOST, help=f"At most so many files ({MOST}).")
+    parser.add_argument("--base", metavar="BRANCH", help="Compare with BRANCH instead of main.")
+    parser.add_argument(
+        "--most", type=int, default=MOST, help=f"Print at most MOST files ({MOST})."
+    )
     parser.add_argument("--changed", action="store_true", help="Print the changed files instead.")
     given = parser.parse_args()
     base = merge_base(given.base)

@@ -28,7 +28,7 @@ BESIDE = 165
 PLAIN = 'fill="#333333"'
 BOLD = 'font-weight="bold" fill="#1f3a5f"'
 CHARACTER = 6.1
-"""Mean width of a character of the text, in pixels; boxes have room for 10 % more."""
+"""Mean width of a character in pixels; boxes are 10 % wider."""
 
 HEADER = """<svg xmlns="http://www.w3.org/2000/svg"
   viewBox="0 0 {width} {height}" width="{width}" height="{height}"
@@ -39,21 +39,21 @@ HEADER = """<svg xmlns="http://www.w3.org/2000/svg"
 
 
 class Room(NamedTuple):
-    """A package of the house, and what its docstring says."""
+    """A package of pytpc, and the first sentence of its docstring."""
 
     name: str
     purpose: str
 
 
 class Contracts(NamedTuple):
-    """The layers, from the one that may import all others down, and further rules in words."""
+    """The layers, from the one that may import all others down; other contracts in words."""
 
     layers: Sequence[Sequence[Room]]
     rules: Sequence[str]
 
 
 def read(root: Path) -> Contracts:
-    """Read the contracts of ``root``; exit with one line where there is no layers contract."""
+    """Read the contracts of ``root``; exit with an error if there is no layers contract."""
     project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))
     contracts = project.get("tool", {}).get("importlinter", {}).get("contracts", [])
     found = [contract for contract in contracts if contract["type"] == "layers"]
@@ -92,7 +92,7 @@ def draw(contracts: Contracts) -> str:
         if number:
             shapes.append(_arrow(top - ARROW))
         width = (WIDTH - 2 * EDGE - GAP * (len(layer) - 1)) / len(layer)
-        # A room that has its layer to itself has its purpose beside its name, not below it.
+        # If a layer has one room, the purpose is beside the name of the room, not below it.
         beside = len(layer) == 1
         room_for_text = width - (BESIDE if beside else 0) - 24
         words = [
@@ -136,9 +136,11 @@ def _text(left: float, top: int, size: float, text: str, style: str) -> str:
 
 
 def main() -> None:
-    """Write the drawing, or compare it with what is there."""
+    """Write the drawing, or compare it with the existing file."""
     parser = argparse.ArgumentParser(description="Draw the architecture from its contracts.")
-    parser.add_argument("--check", action="store_true", help="Only say whether it is up to date.")
+    parser.add_argument(
+        "--check", action="store_true", help="Only check whether the file is up to date."
+    )
     parser.add_argument("--root", type=Path, default=Path(__file__).resolve().parents[1])
     given = parser.parse_args()
     path = given.root / PICTURE

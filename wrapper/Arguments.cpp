@@ -25,8 +25,8 @@ bool Arguments::hasSource(Language Kind) const {
                      [&](const Input &I) { return I.Kind == Kind; });
 }
 
-/// Flags whose value is the next argument. Those that may also be written with
-/// the value joined to them are here for their separate form.
+/// Flags whose value is the next argument. Includes the separate form of flags
+/// that also accept a joined value.
 static bool takesNext(std::string_view Flag) {
   return isOneOf(Flag, {"-o",
                         "--output",
@@ -106,7 +106,7 @@ static bool takesNext(std::string_view Flag) {
                         "--specs"});
 }
 
-/// Flags with which no object comes out: the preprocessor's, questions, and
+/// Flags that produce no object: those of the preprocessor, questions, and
 /// those that ask for something else than code.
 static bool asksForNoObject(std::string_view Flag) {
   return isOneOf(Flag, {"-E",
@@ -151,7 +151,7 @@ static Language languageOf(std::string_view Name) {
   return Language::Other;
 }
 
-/// True where clang makes a precompiled header of an input, and links nothing.
+/// True if clang makes a precompiled header from the input, and links nothing.
 static bool isHeader(std::string_view Forced, std::string_view Path) {
   if (!Forced.empty())
     return Forced.find("header") != Forced.npos;
@@ -186,8 +186,8 @@ static Language languageOfFile(std::string_view Path) {
   return Language::None;
 }
 
-/// True where code for \p Triple is not for this machine, whose programs alone
-/// the log library can be part of.
+/// True if code for \p Triple is for another machine: the log library can only
+/// be part of programs of this one.
 static bool isForeign(std::string_view Triple) {
   utsname Here;
   if (uname(&Here) != 0)
@@ -199,9 +199,9 @@ static bool isForeign(std::string_view Triple) {
          Triple.find("android") != Triple.npos;
 }
 
-/// True where \p Flag has clang instrument the code by itself, in passes that
-/// TPC has it leave out (tpc.cmake says the same); or where the code is for
-/// another machine, or none.
+/// True if \p Flag makes clang instrument the code itself, in passes that TPC
+/// postpones (tpc.cmake has the same list), or if the code is for another
+/// machine or for none.
 static bool isObstacle(std::string_view Flag) {
   if (startsWith(Flag, "-fsanitize=") || startsWith(Flag, "-fprofile-") ||
       isOneOf(Flag, {"--coverage", "-coverage", "-ftest-coverage",
@@ -212,8 +212,8 @@ static bool isObstacle(std::string_view Flag) {
   return startsWith(Flag, Target) && isForeign(Flag.substr(Target.size()));
 }
 
-/// The words of a response file: white space parts them, quotes keep it, and a
-/// backslash keeps the character behind it.
+/// The words of a response file: white space separates them, quotes keep white
+/// space, and a backslash keeps the next character.
 static std::vector<std::string> responseWords(const std::string &Text) {
   std::vector<std::string> Words;
   std::string Word;
@@ -245,13 +245,14 @@ static std::vector<std::string> responseWords(const std::string &Text) {
 }
 
 namespace {
-/// A word of the command line with the number of the argument it came in.
+/// A word of the command line, and the number of the argument that contained
+/// it.
 struct Word {
   std::string Text;
   size_t Argument;
 };
 
-/// Response files may name further ones, but not for ever.
+/// Response files may name other ones; this limits cycles.
 constexpr unsigned MaxDepth = 16;
 
 class Parser {
@@ -280,7 +281,8 @@ private:
   void expand(const std::string &Text, size_t Argument, unsigned Depth) {
     if (Text.size() > 1 && Text[0] == '@' && Depth < MaxDepth) {
       std::ifstream Stream(Text.substr(1), std::ios::binary);
-      // A file that is not there is an argument like any other, to clang too.
+      // If the file does not exist, clang takes it for an ordinary argument
+      // too.
       if (Stream) {
         const std::string Read{std::istreambuf_iterator<char>(Stream), {}};
         for (const std::string &Inner : responseWords(Read))

@@ -18,7 +18,7 @@ static std::string variable(const char *Name) {
   return Value ? Value : "";
 }
 
-/// What is true is what CMake takes for true.
+/// True for the values that CMake takes for true.
 static bool isOn(const char *Name) {
   std::string Value = variable(Name);
   std::transform(Value.begin(), Value.end(), Value.begin(),
@@ -28,8 +28,9 @@ static bool isOn(const char *Name) {
            Value == "NOTFOUND");
 }
 
-/// The working folder as the shell calls it, where that is true: clang writes
-/// it so into the debug information, by which files are told apart.
+/// The working folder under the name that the shell uses, if that is correct:
+/// clang writes this name into the debug information, which identifies files by
+/// it.
 static fs::path workingFolder() {
   std::error_code Failed;
   const fs::path Told = variable("PWD");
@@ -44,8 +45,8 @@ static bool isThere(const fs::path &Path) {
   return fs::exists(Path, Failed);
 }
 
-/// The folder of the project: the nearest one upward that is a ROS package,
-/// else the nearest one that is under git, else \p Folder itself.
+/// The folder of the project: the nearest folder upward that is a ROS package;
+/// otherwise the nearest one under git; otherwise \p Folder itself.
 static fs::path projectOf(const fs::path &Folder) {
   for (const char *Marker : {"package.xml", ".git"})
     for (fs::path Above = Folder;; Above = Above.parent_path()) {
@@ -57,8 +58,8 @@ static fs::path projectOf(const fs::path &Folder) {
   return Folder;
 }
 
-/// What the manifest of a package calls it: the text of the first <name>
-/// outside of comments. Empty where there is none.
+/// The name of a package in its manifest: the text of the first <name> outside
+/// of comments. Empty if there is none.
 static std::string nameInManifest(const fs::path &Manifest) {
   std::ifstream Stream(Manifest, std::ios::binary);
   std::string Text{std::istreambuf_iterator<char>(Stream), {}};
@@ -109,7 +110,7 @@ static std::string filledIn(std::string Word, const Environment &E) {
   return Word;
 }
 
-/// Reads the file of flags; false where it is not there.
+/// Reads the file of flags; false if it does not exist.
 static bool readFlags(const fs::path &File, Environment &E) {
   std::ifstream Stream(File);
   if (!Stream)
@@ -131,13 +132,13 @@ static bool readFlags(const fs::path &File, Environment &E) {
   return true;
 }
 
-/// A limit, where it is a number: another text would end the link.
+/// A limit, if it is a number: any other text would make the link fail.
 static std::string limit(const char *Name, Environment &E) {
   std::string Value = variable(Name);
   if (Value.find_first_not_of("0123456789") == Value.npos && Value.size() < 10)
     return Value;
   E.Complaints.push_back(std::string(Name) +
-                         " is not a number, so it is not heeded: " + Value);
+                         " is not a number and is ignored: " + Value);
   return "";
 }
 
@@ -167,14 +168,15 @@ Environment Environment::read(const fs::path &Self) {
   E.Lld = findProgram("ld.lld-" + clangVersion(), Self);
   if (E.Lld.empty())
     E.Missing = "ld.lld-" + clangVersion() +
-                " is not here (apt-get install lld-" + clangVersion() + ")";
+                " is not installed (apt-get install lld-" + clangVersion() +
+                ")";
   for (const char *Part :
        {"lib/tpc/TpcDefer.so", "lib/tpc/TpcPasses.so", "lib/libtpc_log.so"})
     if (!isThere(E.Prefix / Part))
-      E.Missing = (E.Prefix / Part).string() + " is not there";
+      E.Missing = (E.Prefix / Part).string() + " is missing";
   const fs::path File = E.Prefix / "share/tpc/flags";
   if (!readFlags(File, E))
-    E.Missing = File.string() + " is not there";
+    E.Missing = File.string() + " is missing";
   return E;
 }
 

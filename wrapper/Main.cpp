@@ -1,8 +1,8 @@
 //===- Main.cpp - tpc-clang, tpc-clang++ and LLVM's archiver --------------===//
 //
-// A compiler for builds that are not CMake: works out what clang is asked for,
-// adds TPC's flags where they belong and becomes clang. By its other names it
-// is the archiver that knows bitcode.
+// A compiler for builds without CMake: finds out what clang is asked to do,
+// adds the flags of TPC and becomes clang. Under its other names it is the
+// archiver that reads bitcode.
 //
 //===----------------------------------------------------------------------===//
 #include "Plan.h"
@@ -20,7 +20,8 @@ static void say(const char *What, const std::string &Text) {
   std::fprintf(stderr, "tpc: %s: %s\n", What, Text.c_str());
 }
 
-/// Becomes \p Program; returns, with what a shell would, where it cannot.
+/// Becomes \p Program; if that fails, returns the exit status that a shell
+/// would.
 static int become(const std::string &Program, std::vector<std::string> Words) {
   std::vector<char *> Pointers;
   Words.insert(Words.begin(), Program);
@@ -32,15 +33,16 @@ static int become(const std::string &Program, std::vector<std::string> Words) {
   return errno == ENOENT ? 127 : 126;
 }
 
-/// The archiver and its kind: no flag of theirs is ours.
+/// Runs the archiver or a related tool; their flags stay unchanged.
 static int runTool(const std::string &Tool, const fs::path &Self,
                    const std::vector<std::string> &Words) {
   const std::string Name = "llvm-" + Tool + "-" + clangVersion();
   const std::string Program = findProgram(Name, Self);
   if (!Program.empty())
     return become(Program, Words);
-  say("error", Name + " is not here (apt-get install llvm-" + clangVersion() +
-                   "); the system's " + Tool + " cannot read bitcode");
+  say("error", Name + " is not installed (apt-get install llvm-" +
+                   clangVersion() + "); the system's " + Tool +
+                   " cannot read bitcode");
   return 127;
 }
 
@@ -51,13 +53,14 @@ static int runCompiler(bool IsCxx, const fs::path &Self,
   const std::string Program = findProgram(Name, Self);
   if (Program.empty()) {
     const std::string Other = findProgram(IsCxx ? "c++" : "cc", Self);
-    const std::string Mend =
-        Name + " is not here (apt-get install clang-" + clangVersion() + ")";
+    const std::string Mend = Name +
+                             " is not installed (apt-get install clang-" +
+                             clangVersion() + ")";
     if (Other.empty()) {
       say("error", Mend);
       return 127;
     }
-    say("warning", Mend + "; " + Other + " is used, without TPC");
+    say("warning", Mend + "; using " + Other + " without TPC");
     return become(Other, std::move(Words));
   }
   const Arguments Asked = parseArguments(Words);
@@ -82,7 +85,7 @@ int main(int Count, char **Values) {
   std::error_code Failed;
   const fs::path Self = fs::read_symlink("/proc/self/exe", Failed);
   if (Failed || Count < 1) {
-    say("error", "/proc/self/exe cannot be read: " + Failed.message());
+    say("error", "cannot read /proc/self/exe: " + Failed.message());
     return 127;
   }
   const std::string Name = fs::path(Values[0]).filename();

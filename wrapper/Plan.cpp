@@ -23,7 +23,7 @@ std::string linkUnitName(const std::string &Output) {
   return startsWith(Name, "lib") && Name.size() > 3 ? Name.substr(3) : Name;
 }
 
-/// File names of Autoconf, of CMake, of Meson's first check.
+/// File names of the checks of Autoconf, CMake and Meson.
 static bool isProbeName(const std::string &Name) {
   for (std::string_view Start :
        {"conftest", "cmTC_", "cmTryCompileExec", "testCCompiler",
@@ -34,7 +34,7 @@ static bool isProbeName(const std::string &Name) {
   return false;
 }
 
-/// Folders in which CMake, Meson, SCons, waf and qmake try things.
+/// Folders in which CMake, Meson, SCons, waf and qmake run checks.
 static bool isProbeFolder(const fs::path &Folder) {
   return std::any_of(Folder.begin(), Folder.end(), [](const fs::path &Part) {
     const std::string Name = Part;
@@ -52,7 +52,7 @@ bool isProbe(const Arguments &Asked, const fs::path &Folder) {
     return Path == "/dev/null" || isProbeName(Path.filename()) ||
            isProbeFolder(Path.parent_path());
   };
-  // A library of a probe's folder is none of the program's own sources.
+  // A library in the folder of a check is not one of the program's own sources.
   return IsOfProbe(Asked.Output) ||
          std::any_of(Asked.Inputs.begin(), Asked.Inputs.end(),
                      [&](const Input &I) {
@@ -60,7 +60,8 @@ bool isProbe(const Arguments &Asked, const fs::path &Folder) {
                      });
 }
 
-/// Each word of its own, because -Wl, would part a path at its commas.
+/// Each word gets its own -Xlinker, because -Wl, would split a path at its
+/// commas.
 static void addForLinker(std::vector<std::string> &To,
                          const std::vector<std::string> &Words) {
   for (const std::string &Word : Words) {
@@ -103,13 +104,13 @@ static void addPassOptions(std::vector<std::string> &To,
     addForLinker(To, {"-mllvm", Option});
 }
 
-/// Why a link gets no reports though nothing speaks against the flags of its
-/// objects: the log library is a shared one, and the object of a relocatable
-/// link may come into a program of anybody's.
+/// Why a link gets no reports although the flags of its objects allow it: the
+/// log library is a shared one, and the object of a relocatable link may become
+/// part of any program.
 static std::string whyNoReports(const Arguments &Asked) {
   if (Asked.IsStatic)
     return "a static program cannot use the log library";
-  return Asked.IsRelocatable ? "what -r links is linked again" : "";
+  return Asked.IsRelocatable ? "the output of -r is linked again" : "";
 }
 
 Plan planFor(const Arguments &Asked, const Environment &Around) {
@@ -121,7 +122,7 @@ Plan planFor(const Arguments &Asked, const Environment &Around) {
   const bool Links = Asked.Goal == Step::Link;
   std::string Why = Around.Missing;
   if (Why.empty() && !Asked.Obstacle.empty())
-    Why = Asked.Obstacle + " does not go together with it";
+    Why = Asked.Obstacle + " cannot be combined with TPC";
   const bool IsPlain = Probe || Around.IsDisabled || !Why.empty() ||
                        Asked.hasSource(Language::Other);
   if (!IsPlain && Links)
@@ -132,9 +133,9 @@ Plan planFor(const Arguments &Asked, const Environment &Around) {
       !IsPlain && Asked.hasSource(Language::CFamily) && (!Links || Why.empty());
   if (Asked.hasSource(Language::CFamily))
     add(Out.Added, Around.Added.Accept);
-  // With -Werror among its flags, one that clang has no use for would make
-  // every answer of a probe a no; and flags for C and C++ are of no use to
-  // assembler sources, of which gcc does not warn.
+  // With -Werror, a flag that clang does not need would make every check fail;
+  // and flags for C and C++ are of no use for assembler sources, about which
+  // gcc does not warn.
   const bool IsAssembler = Asked.hasSource(Language::Assembler);
   if (Probe || IsAssembler)
     Out.Added.push_back("-Qunused-arguments");
@@ -142,12 +143,12 @@ Plan planFor(const Arguments &Asked, const Environment &Around) {
     Out.Added.push_back("-Wno-error");
   if (CompilesForUs) {
     add(Out.Added, Around.Added.Compile);
-    // Native code beside the bitcode would be what is linked.
+    // Otherwise native code beside the bitcode would be linked.
     Out.Dropped.push_back("-ffat-lto-objects");
   }
   if (!Links || Around.Lld.empty())
     return Out;
-  // -flto would make bitcode of sources that are to be compiled as ever.
+  // -flto would make bitcode of sources that must be compiled as before.
   for (const std::string &Flag : Around.Added.Link)
     if (CompilesForUs || !startsWith(Flag, "-flto"))
       Out.Added.push_back(Flag);
@@ -155,7 +156,7 @@ Plan planFor(const Arguments &Asked, const Environment &Around) {
     return Out;
   addForLinker(Out.Added, Around.Added.Linker);
   if (!Why.empty()) {
-    // The passes then only do the optimisation that the compiler left to them.
+    // The passes then only run the optimisation that the compiler left to them.
     addPassOptions(Out.Added, {"-tpc-analyse=false"});
     return Out;
   }

@@ -1,4 +1,4 @@
-//===- Plan.h - What is added to a compiler's command -----------*- C++ -*-===//
+//===- Plan.h - What is added to a compiler command -------------*- C++ -*-===//
 #ifndef TPC_WRAPPER_PLAN_H
 #define TPC_WRAPPER_PLAN_H
 
@@ -11,22 +11,22 @@
 namespace tpc {
 
 struct Plan {
-  std::vector<std::string> Added; ///< flags behind the caller's
+  std::vector<std::string> Added; ///< flags to add after those of the caller
   std::vector<std::string>
-      Dropped;         ///< flags of the caller's that no other undoes
-  std::string Warning; ///< why nothing is reported; empty where all is well
+      Dropped;         ///< flags of the caller that no other flag undoes
+  std::string Warning; ///< why nothing is reported; empty if all is well
 };
 
-/// What TPC adds to a command that asks for \p Asked; what does not go together
-/// with it is compiled as clang would, and only linked by lld.
+/// What TPC adds to a command that asks for \p Asked. If TPC does not support
+/// it, it is compiled as clang would, and only linked by lld.
 Plan planFor(const Arguments &Asked, const Environment &Around);
 
-/// Name of a link unit by the file that is linked: without folder, without
-/// "lib" and ".so" with what follows it.
+/// The name of a link unit from the file that is linked: without the folder,
+/// "lib", and ".so" with anything after it.
 std::string linkUnitName(const std::string &Output);
 
-/// True where a configure script, CMake or Meson tries what the compiler can:
-/// nobody's program, whose objects and words are looked at.
+/// True if a configure script, CMake or Meson checks what the compiler can do:
+/// the objects belong to no program, and the check reads the output.
 bool isProbe(const Arguments &Asked, const std::filesystem::path &Folder);
 
 } // namespace tpc

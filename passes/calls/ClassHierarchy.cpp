@@ -32,7 +32,8 @@ std::optional<VirtualCall> ClassHierarchy::match(const CallBase &Call) {
   const auto *Vptr = dyn_cast<LoadInst>(Table);
   if (!Vptr || Call.arg_empty())
     return std::nullopt;
-  // The object is the first argument, or the one after the result's place.
+  // The object is the first argument, or the second if the first is where the
+  // result goes.
   const Value *Object = Vptr->getPointerOperand()->stripPointerCasts();
   for (unsigned N = 0; N < std::min<unsigned>(2, Call.arg_size()); ++N)
     if (Call.getArgOperand(N)->stripPointerCasts() == Object)
@@ -47,23 +48,23 @@ unsigned ClassHierarchy::numberOf(StringRef Name) {
   return It->second;
 }
 
-/// `_ZTV4Base`: for each address point the offset to the top, the type
-/// information, and the functions.
+/// `_ZTV4Base`: for each address point, the offset to the top, the type
+/// information and the functions.
 void ClassHierarchy::addTable(const GlobalVariable &Variable) {
   const auto *Group = dyn_cast<ConstantStruct>(Variable.getInitializer());
   if (!Group)
     return;
   Table Found;
-  // Of several classes of one name, each a file's own, the linker renames the
-  // tables; their type information says whose they are.
+  // If several files have a class of the same name, the linker renames the
+  // tables. Their type information still says which class each belongs to.
   StringRef Name = Variable.getName();
   for (const Use &U : Group->operands()) {
     const auto *Entries = dyn_cast<ConstantArray>(U.get());
     if (!Entries)
       continue;
     Found.emplace_back();
-    // What stands before the functions: offsets to virtual bases, the offset
-    // to the top, and the type information, the last global that is no
+    // Before the functions stand offsets to virtual bases, the offset to the
+    // top and the type information, which is the last global that is not a
     // function.
     unsigned Begin = 2;
     for (unsigned N = 0; N < Entries->getNumOperands(); ++N)
@@ -82,7 +83,7 @@ void ClassHierarchy::addTable(const GlobalVariable &Variable) {
   addObjects(Variable, Number);
 }
 
-/// True where \p Address is what \p Object begins with.
+/// True if \p Address is the first element of \p Object.
 static bool beginsWith(const Constant *Object, const Constant *Address) {
   while (Object && Object != Address)
     Object = isa<ConstantAggregate>(Object) ? Object->getAggregateElement(0U)
@@ -90,8 +91,9 @@ static bool beginsWith(const Constant *Object, const Constant *Address) {
   return Object;
 }
 
-/// Finds out whose \p Table is by who gets its address: `this` in a
-/// constructor or destructor, or a global object that needs no constructor.
+/// Finds the class of \p Table through the objects that hold its address:
+/// `this` in a constructor or destructor, or a global object without a
+/// constructor.
 void ClassHierarchy::addObjects(const GlobalVariable &Table, unsigned Number) {
   auto Add = [&](const Value *Object) {
     const auto *Class =
@@ -137,9 +139,9 @@ ClassHierarchy::find(const DICompositeType &Class) const {
   return It == Numbers.end() ? std::nullopt : std::optional(It->second);
 }
 
-/// `_ZTI4Base`: a class with one base at its beginning has that base third,
-/// others have a number of bases, each with where it stands (its bits from 8
-/// on).
+/// `_ZTI4Base`: the third element is the base of a class with one base at its
+/// beginning. Other classes have the number of bases, then each base and its
+/// offset (from bit 8 on).
 void ClassHierarchy::addBases(const GlobalVariable &TypeInfo) {
   const auto *Info = dyn_cast<ConstantStruct>(TypeInfo.getInitializer());
   if (!Info || Info->getNumOperands() < 3)
@@ -175,7 +177,7 @@ void ClassHierarchy::collect(unsigned Number, bool AtBeginning, unsigned Slot,
                              SmallVectorImpl<Function *> &Out) {
   const Class &C = Classes[Number];
   for (const auto &[N, Functions] : enumerate(C.Functions)) {
-    // A base that does not stand at the beginning has a table further on.
+    // A base that is not at the beginning has its table further on.
     if (AtBeginning != (N == 0) || Slot >= Functions.size())
       continue;
     Function *F = Functions[Slot];
@@ -204,8 +206,7 @@ void ClassHierarchy::addFunctions(
   }
 }
 
-/// `4Node` of the class `N2ns4NodeIdE`; empty for names that are made in other
-/// ways.
+/// `4Node` for the class `N2ns4NodeIdE`; empty for names of other forms.
 static StringRef ownName(StringRef Mangled) {
   Mangled.consume_front("N");
   StringRef Own;

@@ -2,8 +2,8 @@
 //
 // Class hierarchy analysis (Dean, Grove and Chambers, "Optimization of
 // object-oriented programs using static class hierarchy analysis", ECOOP 1995)
-// on what the Itanium C++ ABI leaves in a module: the vtables, and the type
-// information that says who derives from whom.
+// on the vtables and the type information that the Itanium C++ ABI puts into a
+// module.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_CLASSHIERARCHY_H
@@ -23,7 +23,7 @@
 
 namespace tpc {
 
-/// A call through an object's table of virtual functions.
+/// A call through the vtable of an object.
 struct VirtualCall {
   const llvm::Value *Object;
   unsigned Slot;
@@ -33,33 +33,33 @@ class ClassHierarchy {
 public:
   explicit ClassHierarchy(llvm::Module &M);
 
-  /// What kind of virtual call \p Call is; none where it is not one.
+  /// The virtual call that \p Call makes; none if it makes no virtual call.
   static std::optional<VirtualCall> match(const llvm::CallBase &Call);
 
-  /// The functions that \p Call, a virtual one, can enter: those that stand in
-  /// its slot in the tables of the object's class and of what derives from it.
-  /// Empty where the class is not known.
+  /// The functions that the virtual call \p Call can enter: those in its slot
+  /// in the vtables of the object's class and of all derived classes. Empty if
+  /// the class is not known.
   llvm::SmallVector<llvm::Function *, 4> targets(const llvm::CallBase &Call,
                                                  const VirtualCall &How);
 
-  /// Adds the functions that stand in the tables of the class \p Name, as it is
-  /// mangled, and of what derives from it.
+  /// Adds the functions in the vtables of the class with the mangled name
+  /// \p Name and of all derived classes.
   void addFunctions(llvm::StringRef Name,
                     llvm::SmallSetVector<const llvm::Function *, 4> &Out) const;
 
-  /// The same for all classes whose own name, without scopes and arguments, is
-  /// in \p Mangled.
+  /// Adds the same for all classes whose own name, without scopes and template
+  /// arguments, occurs in \p Mangled.
   void addFunctionsOfNamed(
       llvm::StringRef Mangled,
       llvm::SmallSetVector<const llvm::Function *, 4> &Out) const;
 
 private:
-  /// A table: the functions behind each of its address points.
+  /// A vtable: the functions behind each of its address points.
   using Table = llvm::SmallVector<llvm::SmallVector<llvm::Function *, 8>, 1>;
   struct Class {
-    llvm::StringRef Name; ///< as it is mangled
+    llvm::StringRef Name; ///< mangled
     Table Functions;
-    /// Classes that derive from it, and whether it stands at their beginning.
+    /// Derived classes, and whether this class is at the beginning of each.
     llvm::SmallVector<std::pair<unsigned, bool>, 2> Derived;
   };
 
@@ -72,15 +72,15 @@ private:
                const llvm::CallBase &Call,
                llvm::SmallVectorImpl<llvm::Function *> &Out);
 
-  llvm::StringMap<unsigned> Numbers; ///< by the name as it is mangled
+  llvm::StringMap<unsigned> Numbers; ///< by mangled name
   llvm::SmallVector<Class, 0> Classes;
-  /// Classes that have no name across files, by the objects that are given
-  /// their tables.
+  /// Classes that have no name outside of their file, found by the objects that
+  /// get their tables.
   llvm::DenseMap<const llvm::DICompositeType *, unsigned> OfOneFile;
   DebugTypes Debug;
 };
 
-/// True where \p Call can be a call of \p F by their types.
+/// True if the types allow \p Call to call \p F.
 bool fits(const llvm::CallBase &Call, const llvm::Function &F);
 
 } // namespace tpc

@@ -14,25 +14,27 @@ using namespace llvm;
 
 namespace tpc {
 
-/// One search per indirect call: without an end, units with many callbacks
-/// would take quadratic time. Beyond it the call counts as unresolved.
+/// There is one search for each indirect call. Without a limit, link units with
+/// many callbacks would take quadratic time. Beyond the limit the call counts
+/// as unresolved.
 static cl::opt<unsigned> MaxVisited(
     "tpc-max-pointer-steps", cl::Hidden, cl::init(20000),
-    cl::desc(
-        "Places that the search for the targets of one indirect call meets"));
-/// More targets are all functions of a type, which says nothing; the call
-/// counts as unresolved.
+    cl::desc("Places visited in search of the targets of one indirect call"));
+/// If more targets are found, they are usually all functions of one type, which
+/// says nothing; the call counts as unresolved.
 static cl::opt<unsigned>
     MaxTargets("tpc-max-call-targets", cl::Hidden, cl::init(64),
                cl::desc("Functions that one indirect call may enter"));
 
-/// The cell of the scalar at the beginning of what \p T describes at \p Where.
+/// The cell of the scalar at the beginning of an object of type \p T at
+/// \p Where.
 static std::pair<const void *, unsigned>
 enter(Type *T, std::pair<const void *, unsigned> Where) {
   while (auto *Struct = dyn_cast<StructType>(T)) {
     if (Struct->isOpaque() || Struct->getNumElements() == 0)
       break;
-    // A literal type is how a pair of registers is called; it is no class.
+    // A literal struct is how clang passes a pair of registers; it is not a
+    // class.
     if (!Struct->isLiteral())
       Where = {Struct, 0};
     T = Struct->getElementType(0);
@@ -62,12 +64,12 @@ FunctionPointers::Cell FunctionPointers::cellOf(const Value *Pointer) {
     return enter(Local->getAllocatedType(), {Pointer, NoIndex});
   if (const auto *Global = dyn_cast<GlobalVariable>(Pointer))
     return enter(Global->getValueType(), {Pointer, NoIndex});
-  // The uses of null are those of all modules, and later LLVMs do not keep
-  // them.
+  // Null is shared by all modules, and later versions of LLVM do not keep a
+  // list of its uses.
   if (isa<ConstantData>(Pointer))
     return {Pointer, NoIndex};
-  // A pointer without a type of its own has that of the fields that are
-  // reached from it; to the first one no step may be left.
+  // A pointer without a type of its own gets the type of the fields reached
+  // from it. The first getelementptr on the way must not move the pointer.
   for (const User *U : Pointer->users())
     if (const auto *GEP = dyn_cast<GetElementPtrInst>(U);
         GEP && isa<StructType>(GEP->getSourceElementType()))
@@ -92,8 +94,8 @@ void FunctionPointers::addInitializer(const Constant *C, Cell Where) {
     Stored[Where].push_back(C);
 }
 
-/// True for the types of which a value can be a function's address: pointers
-/// to members are pairs of integers.
+/// True for types that can hold the address of a function. Pointers to members
+/// are pairs of integers.
 static bool canCarry(const Type *T) {
   if (const auto *Struct = dyn_cast<StructType>(T))
     return any_of(Struct->elements(), canCarry);
@@ -119,7 +121,7 @@ FunctionPointers::FunctionPointers(Module &M) {
     }
 }
 
-/// One way back from a callee to the functions.
+/// One backward search from a callee to the functions that it can be.
 struct FunctionPointers::Search {
   const FunctionPointers &All;
   const CallBase &Call;
@@ -201,8 +203,8 @@ void FunctionPointers::Search::run(const Value *Callee) {
     step(C);
     if (C.second != NoIndex)
       continue;
-    // What a pointer leads to has other names where the pointer came from,
-    // and, for a variable, where it was handed to.
+    // The object that a pointer leads to has other names where the pointer came
+    // from and, for a variable, where it was passed to.
     const Value *Base = static_cast<const Value *>(C.first);
     if (const auto *Arg = dyn_cast<Argument>(Base)) {
       eachActual(*Arg, [&](const Value *A) { memory(A); });

@@ -1,11 +1,11 @@
 //===- FunctionPointers.h - Where calls through pointers go ---------------===//
 //
-// Follows the callee of an indirect call back to the functions whose address
-// it can hold: through values, arguments, results and memory. Memory is told
-// apart by field, not by object (Heintze and Tardieu, "Ultra-fast aliasing
-// analysis using CLA", PLDI 2001): all objects of a class share a field, which
-// makes copies of objects free. std::function, boost::function and what bind
-// makes keep their targets in such fields.
+// Follows the callee of an indirect call back to the functions whose address it
+// can hold: through values, arguments, results and memory. Memory is
+// distinguished by field, not by object (Heintze and Tardieu, "Ultra-fast
+// aliasing analysis using CLA", PLDI 2001): all objects of a class share a
+// field, so copying an object needs no work. std::function, boost::function and
+// the results of bind keep their targets in such fields.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_FUNCTIONPOINTERS_H
@@ -27,14 +27,14 @@ public:
 
   explicit FunctionPointers(llvm::Module &M);
 
-  /// The functions that \p Call can enter, by their addresses and types; the
-  /// calls that are known so far come from \p Callers. Empty where nothing is
-  /// known, or too much.
+  /// The functions that \p Call can enter, according to stored addresses and
+  /// types; \p Callers holds the calls resolved so far. Empty if no target is
+  /// known, or too many are.
   llvm::SmallVector<llvm::Function *, 2> targets(const llvm::CallBase &Call,
                                                  CallersTy Callers) const;
 
 private:
-  /// A piece of memory: field Index of a class, or with NoIndex what the
+  /// A piece of memory: field Index of a class or, with NoIndex, what the
   /// pointer Base (a global, a local, an argument...) leads to.
   using Cell = std::pair<const void *, unsigned>;
   static constexpr unsigned NoIndex = ~0U;

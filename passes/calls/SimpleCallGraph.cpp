@@ -26,12 +26,12 @@ STATISTIC(NumUnresolved, "Indirect calls whose targets are not known");
 AnalysisKey SimpleCallGraph::Key;
 
 ArrayRef<CallBase *> CallGraphResult::callers(const Function *F) const {
-  auto It = Callers.find(F);
+  const auto *It = Callers.find(F);
   return It == Callers.end() ? ArrayRef<CallBase *>() : ArrayRef(It->second);
 }
 
 ArrayRef<Instruction *> CallGraphResult::mentions(const Function *F) const {
-  auto It = Mentions.find(F);
+  const auto *It = Mentions.find(F);
   return It == Mentions.end() ? ArrayRef<Instruction *>()
                               : ArrayRef(It->second);
 }
@@ -56,14 +56,14 @@ CallGraphResult::callees(const CallBase &Call) const {
   return Found;
 }
 
-/// Trampolines are shallow. Larger functions are not taken for one.
+/// Trampolines are shallow. A larger function does not count as one.
 static cl::opt<unsigned> MaxCallees(
     "tpc-max-library-callees", cl::Hidden, cl::init(64),
     cl::desc("Library functions that are searched for an indirect call"));
 
-/// True where \p F, a library's function, calls what only its data says: what
-/// boost::bind makes of a pointer to a member. All callbacks of a signature
-/// share it.
+/// True if the library function \p F calls a target that only its data
+/// contains, like the result of boost::bind for a pointer to a member. All
+/// callbacks with the same signature share such a function.
 static bool callsAnything(const Function &F, UserSources &Sources) {
   SmallSetVector<const Function *, 8> Work;
   Work.insert(&F);
@@ -81,8 +81,8 @@ static bool callsAnything(const Function &F, UserSources &Sources) {
   return false;
 }
 
-/// Calls \p Add with the instructions that use \p C, be it as a part of another
-/// constant.
+/// Calls \p Add with the instructions that use \p C, also those that use it as
+/// a part of another constant.
 template <typename Fn> static void forEachUser(Constant &C, Fn Add) {
   SmallVector<Constant *, 4> Work{&C};
   while (!Work.empty())
@@ -97,8 +97,8 @@ template <typename Fn> static void forEachUser(Constant &C, Fn Add) {
 
 void CallGraphResult::findMentions(Module &M, const Options &Opts) {
   UserSources Sources(Opts);
-  // Uses are in no order that means anything, and the same constant is used
-  // in functions that are not in the module any more.
+  // The order of a use list is arbitrary, and constants may also be used in
+  // functions that have been removed from the module.
   DenseMap<const Instruction *, unsigned> Order;
   for (Function &F : definedFunctions(M)) {
     if (Rules->isOpaque(F) || !F.hasAddressTaken())
@@ -130,8 +130,8 @@ void CallGraphResult::findMentions(Module &M, const Options &Opts) {
     });
 }
 
-/// What a function that is not looked into calls of a library is its own: its
-/// arguments there are no use of what it was handed.
+/// Drops the calls that opaque functions make to a library: their arguments are
+/// not uses of what the caller passed.
 void CallGraphResult::forgetOpaqueCallers(const Options &Opts) {
   UserSources Sources(Opts);
   for (auto &[F, Calls] : Callers)
@@ -177,7 +177,7 @@ CallGraphResult SimpleCallGraph::run(Module &M, ModuleAnalysisManager &AM) {
   if (!ThroughPointers.empty()) {
     FunctionPointers Pointers(M);
     auto Callers = [&](const Function *F) { return R.callers(F); };
-    // A call that is resolved hands on pointers that others call.
+    // A resolved call passes on pointers that other calls may call.
     for (unsigned Round = 0; Round < 2; ++Round)
       for (CallBase *Call : ThroughPointers)
         if (!R.Indirect.contains(Call))

@@ -1,10 +1,11 @@
 //===- SimpleCallGraph.h - Who calls a function ---------------------------===//
 //
-// Thesis A.5: function -> the call and invoke instructions that call it: those
-// that name it, virtual calls by the class hierarchy, and calls through
-// pointers by where the pointers come from. A function that is handed to
-// somebody else to be called (a subscriber's callback, a thread's, a timer's)
-// has the places that mention it; it runs only if they do.
+// Thesis A.5: function -> the call and invoke instructions that call it. These
+// are calls by name, virtual calls (resolved by class hierarchy analysis) and
+// calls through pointers (resolved by where the pointers come from). For a
+// function whose address is passed on so that other code calls it (the callback
+// of a subscriber, thread or timer), the places that mention it are recorded:
+// it runs only if they run.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_SIMPLECALLGRAPH_H
@@ -24,23 +25,21 @@ class RuleMatches;
 
 class CallGraphResult {
 public:
-  /// The calls of \p F, in the order of the module; for a library's function
-  /// without those by functions that are not looked into.
+  /// The calls of \p F, in the order of the module. For a library function,
+  /// calls by opaque functions are left out.
   llvm::ArrayRef<llvm::CallBase *> callers(const llvm::Function *F) const;
-  /// The functions that \p Call may enter and that are looked into: they have
-  /// a body, and the rules do not stand for it.
+  /// The functions that \p Call may enter and whose bodies are analysed.
   llvm::SmallVector<llvm::Function *, 1>
   callees(const llvm::CallBase &Call) const;
 
-  /// The instructions that hand on the address of \p F, in the order of the
+  /// The instructions that pass on the address of \p F, in the order of the
   /// module.
   llvm::ArrayRef<llvm::Instruction *> mentions(const llvm::Function *F) const;
 
-  /// True where \p F is called from nowhere but from its callers, as far as
-  /// this module goes.
+  /// True if, as far as this module shows, \p F is only called by callers().
   bool allCallsKnown(const llvm::Function &F) const;
 
-  /// Calls whose callee is not known, in the order of the module.
+  /// Calls with an unknown callee, in the order of the module.
   llvm::ArrayRef<llvm::CallBase *> unresolved() const { return Unresolved; }
 
 private:
@@ -54,7 +53,7 @@ private:
   llvm::MapVector<const llvm::Function *,
                   llvm::SmallVector<llvm::Instruction *, 2>>
       Mentions;
-  /// Functions whose address an instruction hands on.
+  /// Functions whose address an instruction passes on.
   llvm::DenseSet<const llvm::Function *> HandedOn;
   llvm::SmallVector<llvm::CallBase *, 0> Unresolved;
   llvm::DenseSet<const llvm::FunctionType *> UnresolvedTypes;

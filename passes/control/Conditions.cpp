@@ -12,8 +12,7 @@ using namespace llvm;
 
 namespace tpc {
 
-/// The next conditional branch on the way from \p BB that runs nothing
-/// conditional in between.
+/// The next conditional branch reached from \p BB without passing another one.
 static const BranchInst *nextBranch(const BasicBlock *BB) {
   for (unsigned Steps = 0; Steps < 16; ++Steps) {
     const Instruction *T = BB->getTerminator();
@@ -29,9 +28,10 @@ static const BranchInst *nextBranch(const BasicBlock *BB) {
   return nullptr;
 }
 
-/// True where \p B begins a statement in the block in which \p A is part of
-/// another one, as `bool In = A && ...; if (In)`. Clang 19 gives both the scope
-/// of the block; later ones give a statement's condition the scope of its own.
+/// True if \p B begins a new statement in the block in which \p A is part of an
+/// earlier one, as in `bool In = A && ...; if (In)`. Clang 19 gives both the
+/// scope of the block; later versions give the condition of a statement its own
+/// scope.
 static bool nextStatement(const DILocation &A, const DILocation &B) {
   const auto *Own = dyn_cast<DILexicalBlock>(B.getScope());
   const auto *Around = dyn_cast<DILexicalBlock>(A.getScope());
@@ -40,9 +40,10 @@ static bool nextStatement(const DILocation &A, const DILocation &B) {
          !(Around && Around->getLine() == A.getLine());
 }
 
-/// True where \p A and \p B can belong to one condition, A before B. Clang
-/// gives a statement's condition a scope of its own, in which all operands
-/// stand but (in clang 19) the last; that one has the statement's place.
+/// True if \p A and \p B can belong to one condition, A before B. Clang gives
+/// the condition of a statement a scope of its own that holds all operands. In
+/// clang 19 the last operand is an exception: it has the location of the
+/// statement.
 static bool sameStatement(const BranchInst &A, const BranchInst &B) {
   const DILocation *LocA = A.getDebugLoc(), *LocB = B.getDebugLoc();
   if (!LocA || !LocB)
@@ -56,7 +57,7 @@ static bool sameStatement(const BranchInst &A, const BranchInst &B) {
           Scope->getColumn() == LocB->getColumn());
 }
 
-/// The ways out of \p Br, past blocks that only end a condition.
+/// The successors of \p Br, past blocks that only end a condition.
 static SmallVector<const BasicBlock *, 2> waysOut(const BranchInst &Br) {
   SmallVector<const BasicBlock *, 2> Ways;
   for (const BasicBlock *S : successors(&Br)) {
@@ -66,8 +67,8 @@ static SmallVector<const BasicBlock *, 2> waysOut(const BranchInst &Br) {
   return Ways;
 }
 
-/// The branches that are operands of one `&&` or `||` with \p First and come
-/// after it: of its statement, and with a way out that is also its own.
+/// The branches after \p First that are operands of the same `&&` or `||`: they
+/// belong to the same statement and share a successor with it.
 static SmallVector<const BranchInst *, 4>
 sameCondition(const BranchInst &First) {
   SmallVector<const BranchInst *, 4> Found;

@@ -14,10 +14,11 @@ namespace tpc {
 
 class Conditions {
 public:
-  /// The conditions of \p Predicates, and of what belongs to them.
+  /// Groups \p Predicates into conditions.
   explicit Conditions(llvm::ArrayRef<const llvm::Instruction *> Predicates);
 
-  /// One predicate that stands for the condition of \p Predicate, one of those.
+  /// The predicate that represents the condition of \p Predicate, which must be
+  /// one of those given.
   const llvm::Instruction *of(const llvm::Instruction &Predicate) const {
     return Classes.getLeaderValue(&Predicate);
   }

@@ -25,7 +25,7 @@ namespace {
 
 constexpr unsigned None = ~0U;
 
-FlowGraph turnedRound(const FlowGraph &Graph) {
+FlowGraph reversed(const FlowGraph &Graph) {
   FlowGraph Preds(Graph.size());
   for (unsigned N = 0; N < Graph.size(); ++N)
     for (unsigned S : Graph[N])
@@ -33,7 +33,7 @@ FlowGraph turnedRound(const FlowGraph &Graph) {
   return Preds;
 }
 
-/// The loop that \p Node ends up in and that has no way out.
+/// The nodes of the loop without an exit that \p Node ends up in.
 std::vector<bool> endlessLoop(const FlowGraph &Graph, const FlowGraph &Preds,
                               unsigned Node) {
   for (;;) {
@@ -48,12 +48,12 @@ std::vector<bool> endlessLoop(const FlowGraph &Graph, const FlowGraph &Preds,
   }
 }
 
-/// Gives each loop that never ends a way out after any round, before it begins
-/// again: an end inside would make what else is in it depend on the branches
-/// that lead there. The nodes for that come after those of \p Graph.
+/// Gives each endless loop an exit between two rounds. An exit inside of a
+/// round would make other nodes of the loop depend on the branches that lead to
+/// it. The added nodes follow those of \p Graph.
 FlowGraph withEnds(FlowGraph Graph) {
   for (;;) {
-    FlowGraph Preds = turnedRound(Graph);
+    FlowGraph Preds = reversed(Graph);
     std::vector<unsigned> Ends;
     for (unsigned N = 0; N < Graph.size(); ++N)
       if (Graph[N].empty())
@@ -71,7 +71,7 @@ FlowGraph withEnds(FlowGraph Graph) {
     unsigned First = 0;
     while (First < Graph.size() && !IsEntered(First))
       ++First;
-    if (First == Graph.size()) // nothing leads there
+    if (First == Graph.size()) // not reachable
       First = static_cast<unsigned>(std::find(Loop.begin(), Loop.end(), true) -
                                     Loop.begin());
     unsigned Again = static_cast<unsigned>(Graph.size());
@@ -83,8 +83,8 @@ FlowGraph withEnds(FlowGraph Graph) {
   }
 }
 
-/// The graph turned round, with one more node: the exit, from which every
-/// node can be reached.
+/// The reversed graph with one more node: the exit. Every node can be reached
+/// from the exit.
 class ReverseGraph {
 public:
   explicit ReverseGraph(const FlowGraph &Graph);
@@ -99,11 +99,11 @@ private:
   void addExit(unsigned Node);
   std::vector<unsigned> postOrder() const;
 
-  FlowGraph Succs; ///< of the original direction, exit edges included
+  FlowGraph Succs; ///< in the original direction, including edges to the exit
   FlowGraph Preds;
 };
 
-/// Nodes of \p Graph in post-order from \p Roots, one after the other.
+/// Nodes of \p Graph in post-order, from each of \p Roots in turn.
 std::vector<unsigned> postOrderFrom(const FlowGraph &Graph,
                                     const std::vector<unsigned> &Roots) {
   std::vector<unsigned> Order;

@@ -11,10 +11,10 @@ using namespace llvm;
 
 namespace tpc {
 
-/// Merged values that are constant on one way through the program.
+/// The values of phis that are constant on one path.
 using KnownMerges = SmallDenseMap<const PHINode *, const ConstantInt *, 4>;
 
-/// Adds to \p Known what the merges of \p BB are where it is entered from
+/// Adds to \p Known the values of the phis of \p BB if it is entered from
 /// \p From.
 static void enterBlock(const BasicBlock *From, const BasicBlock &BB,
                        KnownMerges &Known) {
@@ -29,7 +29,8 @@ static void enterBlock(const BasicBlock *From, const BasicBlock &BB,
     Known[Phi] = C;
 }
 
-/// Where \p T surely goes on to; null where that is open.
+/// The only successor that \p T can take given the known phis; null if it may
+/// take several.
 static const BasicBlock *surelyNext(const Instruction &T,
                                     const KnownMerges &Known) {
   if (!isPredicate(T))
@@ -67,9 +68,9 @@ static const BasicBlock *surelyNext(const Instruction &T,
   return Switch->getDefaultDest();
 }
 
-/// The blocks from \p BB on that surely follow each other where \p BB is
-/// entered from \p From, as far as that is sure. The last one's ways are open;
-/// where the first one's are, there is none.
+/// The blocks from \p BB on that must follow each other if \p BB is entered
+/// from \p From. Where the last one goes is not known. Empty if that already
+/// holds for \p BB.
 static SmallVector<const BasicBlock *, 4> decidedPath(const BasicBlock *From,
                                                       const BasicBlock *BB,
                                                       const LeftInside &Left) {
@@ -107,7 +108,8 @@ const Constant *handlerAskedFor(const Instruction &T) {
   return nullptr;
 }
 
-/// Where \p T leads an exception of type \p Thrown, in case it asks for that.
+/// Where \p T, if it checks the type of an exception, leads an exception of
+/// type \p Thrown.
 static const BasicBlock *chosenByType(const Instruction &T, ThrownType Thrown) {
   const Constant *Handler = handlerAskedFor(T);
   std::optional<bool> Taken =
@@ -123,8 +125,8 @@ static bool beginsHandler(const BasicBlock &BB) {
   });
 }
 
-/// The blocks that an exception of type \p Thrown goes through from \p Invoke
-/// on, and the one where it is not sure how it goes on: the handler.
+/// The blocks that an exception of type \p Thrown passes through from \p Invoke
+/// on, and the first block whose successor is not known: the handler.
 static SmallVector<const BasicBlock *, 4>
 pathToHandler(const InvokeInst &Invoke, ThrownType Thrown,
               const LeftInside &Left) {
@@ -143,16 +145,18 @@ pathToHandler(const InvokeInst &Invoke, ThrownType Thrown,
       Sure.push_back(Next);
     } else if (const auto *Inner = dyn_cast<InvokeInst>(&T)) {
       Next = Inner->getNormalDest();
-    } else if (!(Next = BB->getUniqueSuccessor())) {
-      break;
+    } else {
+      Next = BB->getUniqueSuccessor();
+      if (!Next)
+        break;
     }
     From = std::exchange(BB, Next);
   }
   return Sure;
 }
 
-/// True where the program ends soon after \p BB, or leaves by an exception,
-/// whatever happens: what an assertion does that does not hold.
+/// True if the program always ends or leaves by an exception soon after \p BB,
+/// as a failed assertion does.
 static bool endsProgram(const BasicBlock *BB) {
   for (unsigned Steps = 0; Steps < 8 && BB; ++Steps) {
     const Instruction *T = BB->getTerminator();
@@ -187,7 +191,8 @@ Flow::Flow(Function &F, UserSources &Sources, const ThrowsResult &Thrown) {
       invoke(Ends.back(), *Invoke, Thrown);
   }
   NumThrown = Copies.size();
-  Plain.insert(Plain.end(), Threaded.begin() + Plain.size(), Threaded.end());
+  auto Added = drop_begin(Threaded, Plain.size());
+  Plain.insert(Plain.end(), Added.begin(), Added.end());
   for (BasicBlock &BB : F) {
     unsigned N = Ends[Id.lookup(&BB)];
     Instruction *T = BB.getTerminator();
@@ -209,10 +214,10 @@ Flow::Flow(Function &F, UserSources &Sources, const ThrowsResult &Thrown) {
   findEntered();
 }
 
-/// The node of \p BB that its terminator is in; makes those before it.
+/// The node that holds the terminator of \p BB; creates the nodes before it.
 unsigned Flow::endOf(BasicBlock &BB) {
   unsigned N = Id.lookup(&BB), Size = Blocks.size();
-  auto It = Left.find(&BB);
+  auto *It = Left.find(&BB);
   if (It == Left.end())
     return N;
   for (Instruction *Call : It->second) {
@@ -249,7 +254,7 @@ void Flow::invoke(unsigned Node, InvokeInst &Invoke,
   Plain[Node] = Threaded[Node];
 }
 
-/// The node that stands for the way through \p Path, up to its last block.
+/// The node that represents \p Path, up to its last block.
 unsigned Flow::copy(ArrayRef<const BasicBlock *> Path) {
   if (Path.size() == 1)
     return Id.lookup(Path.front());
@@ -267,10 +272,10 @@ unsigned Flow::copy(ArrayRef<const BasicBlock *> Path) {
   return Node;
 }
 
-/// Takes the ways out of the blocks that all edges were led past: there is
-/// nothing that they decide. In Plain they keep those that somebody goes.
-/// Blocks that no edge leads to stay, an exception does that nobody threw
-/// explicitly.
+/// Removes the outgoing edges of blocks that all edges bypass: such a block
+/// decides nothing. In Plain they keep the edges that are taken. Blocks without
+/// incoming edges stay: an exception that nobody throws explicitly reaches
+/// them.
 void Flow::findEntered() {
   std::vector<bool> HasEdge(Plain.size());
   for (const std::vector<unsigned> &Succs : Plain)
@@ -294,7 +299,8 @@ void Flow::findEntered() {
       if (!ReachedPlain[N])
         Plain[N].clear();
   }
-  Entered.assign(Reached.begin(), Reached.begin() + Blocks.size());
+  Reached.resize(Blocks.size());
+  Entered = std::move(Reached);
   MapVector<unsigned, SmallVector<unsigned, 2>> Gone;
   for (const Copy &C : Copies)
     Gone[idOf(C.BB)].push_back(idOf(C.Next));

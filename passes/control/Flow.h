@@ -1,4 +1,4 @@
-//===- Flow.h - The flow graphs that control dependence is taken from -----===//
+//===- Flow.h - The flow graphs that define control dependence ------------===//
 #ifndef TPC_FLOW_H
 #define TPC_FLOW_H
 
@@ -17,25 +17,26 @@ namespace tpc {
 
 class UserSources;
 
-/// Blocks that are not passed through: they can be left inside.
+/// Blocks that control may leave in the middle.
 using LeftInside = llvm::MapVector<const llvm::BasicBlock *,
                                    llvm::SmallVector<llvm::Instruction *, 1>>;
 
-/// The flow graphs of a function, with the two nodes of Ferrante et al. behind
-/// the blocks: the entry, from which the function is either entered or not, and
-/// the end of not entering it.
+/// The flow graphs of a function. Two nodes of Ferrante et al. follow the
+/// blocks: the entry, which either enters the function or not, and the end of
+/// not entering it.
 ///
-/// Of the edges that exceptions take they have those of what the user throws: a
-/// call that leads to a `throw` can go on, or to the handler, or out of the
-/// function; a block with such calls inside is a node for each part. Edges that
-/// end the program (`noexcept`) are none.
+/// Exceptions add edges only where user code throws. A call that leads to a
+/// `throw` can continue, go to the handler or leave the function; a block with
+/// such calls inside has one node for each part. Edges that end the program
+/// (`noexcept`) are left out.
 ///
-/// Checks of libraries (that a pointer is not null, that a function is there)
-/// that end the program are left out as exceptions are: nobody who reads the
-/// source sees them.
+/// Checks in libraries that end the program (that a pointer is not null, that a
+/// function is set) are left out like other exceptions: a reader of the source
+/// does not see them.
 class Flow {
 public:
-  /// A node for a block as it is on a way that is decided before it is entered.
+  /// A copy of a block for a path on which its successor is known before the
+  /// block is entered.
   struct Copy {
     const llvm::BasicBlock *BB, *Next;
     unsigned Node;
@@ -45,20 +46,21 @@ public:
 
   unsigned idOf(const llvm::BasicBlock *BB) const { return Id.lookup(BB); }
 
-  /// The blocks, in order; the number of one is that of its node.
+  /// The blocks in order; the index of a block is the number of its node.
   llvm::SmallVector<llvm::BasicBlock *, 32> Blocks;
   FlowGraph Plain;
-  /// Edges into blocks that are decided by the edge lead to copies of them; in
-  /// Plain those alone that exceptions take.
+  /// The graph in which an edge into a block leads to a copy of the block if
+  /// the edge decides its successor. In Plain, only the edges of exceptions do.
   FlowGraph Threaded;
   llvm::SmallVector<Copy, 8> Copies;
-  size_t NumThrown = 0; ///< The first so many are the ways of exceptions.
-  /// Blocks that are also entered where their ways are open, or by exceptions.
+  size_t NumThrown = 0; ///< The first NumThrown copies are for exceptions.
+  /// Blocks that are also entered where their successor is open, or by
+  /// exceptions.
   std::vector<bool> Entered;
   LeftInside Left;
-  /// For each node of Plain what decides at its end; null where nothing does.
+  /// For each node of Plain, the instruction that decides at its end, or null.
   std::vector<llvm::Instruction *> Decider;
-  /// A part of a block, behind the call that it begins with.
+  /// The part of a block behind a call.
   struct Part {
     unsigned Block, Node;
     const llvm::Instruction *Begin;
@@ -74,9 +76,9 @@ private:
 
   llvm::DenseMap<const llvm::BasicBlock *, unsigned> Id;
   std::map<std::vector<unsigned>, unsigned> ByPath;
-  /// Where calls lead that nobody takes to throw.
+  /// Blocks reached by the exceptions of calls that are not taken to throw.
   llvm::DenseSet<const llvm::BasicBlock *> Implicit;
-  /// Where those lead that are.
+  /// Blocks reached by the exceptions of calls that are taken to throw.
   llvm::DenseSet<const llvm::BasicBlock *> Explicit;
 };
 

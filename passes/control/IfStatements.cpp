@@ -29,8 +29,8 @@ bool isPredicate(const Instruction &I) {
 }
 
 Value *conditionOf(const Instruction &Predicate) {
-  // A select's condition is its first operand, a branch's its last, and a
-  // switch's its first again; only the branch has to be asked.
+  // The condition is the first operand of a select and of a switch, but the
+  // last operand of a branch.
   if (const auto *Br = dyn_cast<BranchInst>(&Predicate))
     return Br->getCondition();
   assert(isPredicate(Predicate) && "decides nothing");
@@ -53,7 +53,7 @@ IfStatementsResult::controllersOf(const Value *Part) const {
                                  : ArrayRef(It->second);
 }
 
-/// True where \p BB does more than to choose the way.
+/// True if \p BB does more than choose a successor.
 static bool doesSomething(const BasicBlock &BB) {
   return any_of(BB, [](const Instruction &I) {
     const auto *Known = dyn_cast<IntrinsicInst>(&I);
@@ -63,7 +63,8 @@ static bool doesSomething(const BasicBlock &BB) {
   });
 }
 
-/// What decides at the ends of the nodes in \p Depends; at some, nothing does.
+/// The instructions that decide at the ends of the nodes in \p Depends; some
+/// nodes have none.
 static SmallVector<Instruction *, 2> decidersIn(ArrayRef<unsigned> Depends,
                                                 const Flow &Graphs) {
   SmallVector<Instruction *, 2> Found;
@@ -81,8 +82,8 @@ IfStatementsResult::choosers(const BasicBlock *From,
   auto It = Decided.find({From, BB});
   if (It != Decided.end())
     append_range(Found, It->second);
-  // On the other ways nobody goes: clang has one for a scope's end that is left
-  // to none of the places that it can be left to.
+  // The other edges are never taken: clang adds one to the end of a scope for
+  // the case that none of its successors applies.
   if (Bypassed.contains(From))
     return Found;
   const Instruction *T = From->getTerminator();
@@ -114,8 +115,8 @@ IfStatementsResult IfStatements::run(Module &M, ModuleAnalysisManager &AM) {
                    decidersIn(Depends[C.Node], Graphs));
     }
     if (!Graphs.Copies.empty()) {
-      // What a block does that edges were led past is done on all of them;
-      // one that does nothing is only the end of a condition.
+      // What a bypassed block does, it does on all of these paths. A block that
+      // does nothing is only the end of a condition.
       auto Before = controlDependence(Graphs.Plain);
       for (unsigned N = 0; N < Blocks.size(); ++N) {
         if (!Graphs.Entered[N])
@@ -127,7 +128,7 @@ IfStatementsResult IfStatements::run(Module &M, ModuleAnalysisManager &AM) {
       for (const Flow::Part &P : Graphs.Parts)
         if (!Graphs.Entered[P.Block])
           Depends[P.Node] = Before[P.Node];
-      // What is done where an exception passes through is done on its ways,
+      // What happens where an exception passes through happens on its paths
       // too.
       for (const Flow::Copy &C :
            ArrayRef(Graphs.Copies).take_front(Graphs.NumThrown)) {
@@ -154,7 +155,7 @@ IfStatementsResult IfStatements::run(Module &M, ModuleAnalysisManager &AM) {
     for (auto &[BB, Calls] : Graphs.Left)
       R.Parted[BB] = std::move(Calls);
     for (Instruction *I : Graphs.Decider)
-      if (I && isa<InvokeInst>(I))
+      if (isa_and_nonnull<InvokeInst>(I))
         R.Choosing.insert(I);
   }
   return R;

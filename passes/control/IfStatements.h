@@ -1,9 +1,9 @@
 //===- IfStatements.h - Which predicates control a block ------------------===//
 //
-// Thesis A.7, by control dependence instead of counting visits: early returns,
-// loops and breaks come out right. A `throw` of the user's leads to the handler
-// that takes it, in its own function and in those that call it; where other
-// calls may throw, that makes no dependence.
+// Thesis A.7, with control dependence instead of counted visits, so that early
+// returns, loops and breaks are correct. A `throw` in user code leads to the
+// handler that catches it, in the same function or in a caller. Calls that may
+// throw for other reasons add no dependence.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_IFSTATEMENTS_H
@@ -17,49 +17,49 @@
 
 namespace tpc {
 
-/// True where \p I decides between two ways: a conditional branch, a switch,
-/// or a select (a conditional expression whose sides cost nothing).
+/// True if \p I chooses between alternatives: a conditional branch, a switch or
+/// a select (a conditional expression without side effects).
 bool isPredicate(const llvm::Instruction &I);
 
-/// What \p Predicate decides by.
+/// The value that \p Predicate tests.
 llvm::Value *conditionOf(const llvm::Instruction &Predicate);
 
-/// The type of the handler that \p T, a branch behind a landing pad, asks for;
-/// null where it is no such branch.
+/// The type of the handler that \p T, a branch behind a landing pad, checks
+/// for; null if \p T is no such branch.
 const llvm::Constant *handlerAskedFor(const llvm::Instruction &T);
 
-/// Where \p BB is entered from \p From, where its terminator then goes for
-/// sure, because it decides by a value that is constant on this edge: clang
-/// ends the conditions of loops and variables, and scopes with something to
-/// clean up, in such a block, and scopes in scopes in several, one after the
-/// other. Null where both ways stay open.
+/// The successor that the terminator of \p BB takes if \p BB is entered from
+/// \p From and the tested value is constant on this edge. Clang ends the
+/// conditions of loops and variables, and scopes with cleanups, in such a
+/// block; nested scopes end in several of them. Null if both successors are
+/// possible.
 const llvm::BasicBlock *decidedWay(const llvm::BasicBlock *From,
                                    const llvm::BasicBlock *BB);
 
 class IfStatementsResult {
 public:
-  /// The predicates, and the calls that may throw, that the beginning of \p BB
-  /// is directly controlled by.
+  /// The predicates, and the calls that may throw, that directly control the
+  /// beginning of \p BB.
   llvm::ArrayRef<llvm::Instruction *>
   controllers(const llvm::BasicBlock *BB) const {
     return controllersOf(BB);
   }
-  /// The same for \p I, which may stand behind a call that throws.
+  /// The same for \p I, which may follow a call that throws.
   llvm::ArrayRef<llvm::Instruction *>
   controllers(const llvm::Instruction &I) const {
     return controllersOf(partOf(I));
   }
-  /// True where \p BB is begun whenever its function is called, or is reached
-  /// by an exception alone that nobody threw explicitly: then the calls of the
-  /// function control it. A loop at the top level of a function has both kinds
-  /// of controllers.
+  /// True if \p BB runs whenever its function is called, or is only reached by
+  /// an exception that nobody throws explicitly: then the calls of the function
+  /// control it. A loop at the top level of a function has both kinds of
+  /// controllers.
   bool isControlledByEntry(const llvm::BasicBlock *BB) const {
     return ByEntry.contains(BB);
   }
   bool isControlledByEntry(const llvm::Instruction &I) const {
     return ByEntry.contains(partOf(I));
   }
-  /// The predicates that choose the way from \p From to \p BB.
+  /// The predicates that choose the path from \p From to \p BB.
   llvm::SmallVector<llvm::Instruction *, 4>
   choosers(const llvm::BasicBlock *From, const llvm::BasicBlock *BB) const;
   /// All predicates, in the order of the module.
@@ -72,8 +72,8 @@ private:
   llvm::ArrayRef<llvm::Instruction *>
   controllersOf(const llvm::Value *Part) const;
 
-  /// By what a part of a block begins with: the block itself, or a call in it
-  /// that may throw, for what stands behind that.
+  /// Keyed by what a part of a block begins with: the block itself, or a call
+  /// in it that may throw and that the part follows.
   llvm::DenseMap<const llvm::Value *, llvm::SmallVector<llvm::Instruction *, 2>>
       Controllers;
   llvm::DenseSet<const llvm::Value *> ByEntry;
@@ -81,13 +81,14 @@ private:
   llvm::DenseMap<const llvm::BasicBlock *,
                  llvm::SmallVector<llvm::Instruction *, 1>>
       Parted;
-  /// The invokes that lead on or to a handler.
+  /// The invokes that continue or go to a handler.
   llvm::DenseSet<const llvm::Instruction *> Choosing;
-  /// Of edges that are also gone where that was decided before: by what.
+  /// For edges that are also taken after an earlier decision: the deciding
+  /// instructions.
   llvm::DenseMap<std::pair<const llvm::BasicBlock *, const llvm::BasicBlock *>,
                  llvm::SmallVector<llvm::Instruction *, 2>>
       Decided;
-  /// Blocks that are entered only where it is decided how they go on.
+  /// Blocks that are only entered where their successor is known.
   llvm::DenseSet<const llvm::BasicBlock *> Bypassed;
   llvm::SmallVector<llvm::Instruction *, 0> Predicates;
 };

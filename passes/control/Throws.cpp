@@ -14,22 +14,22 @@ namespace tpc {
 
 AnalysisKey Throws::Key;
 
-/// Each type is carried through all callers. Beyond it the call throws
-/// anything.
-static cl::opt<unsigned>
-    MaxTypes("tpc-max-thrown-types", cl::Hidden, cl::init(4),
-             cl::desc("Types of exceptions that are told apart at one call"));
+/// Each type is propagated through all callers. Beyond the limit a call counts
+/// as throwing any type.
+static cl::opt<unsigned> MaxTypes(
+    "tpc-max-thrown-types", cl::Hidden, cl::init(4),
+    cl::desc("Types of exceptions that are distinguished at one call"));
 
-/// Classes of exceptions have few bases; a damaged table might have a cycle.
+/// Exception classes have few bases; a damaged table might contain a cycle.
 static cl::opt<unsigned> MaxBases(
     "tpc-max-exception-bases", cl::Hidden, cl::init(32),
     cl::desc("Base classes of an exception that are compared with a handler"));
 
 //===----------------------------------------------------------------------===//
-// Which handler takes what
+// What a handler catches
 //===----------------------------------------------------------------------===//
 
-/// The name of a type as it is mangled, `St12out_of_range`.
+/// The mangled name of a type, `St12out_of_range`.
 static StringRef typeName(const GlobalVariable &Type) {
   StringRef Name = Type.getName();
   Name.consume_front("_ZTI");
@@ -40,8 +40,8 @@ static bool isStandard(StringRef Type) {
   return Type.starts_with("St") || Type.starts_with("NSt");
 }
 
-/// The same for a type of the standard library, whose bases the unit does not
-/// hold: [std.exceptions].
+/// The same for types of the standard library, whose bases are not in the link
+/// unit: [std.exceptions].
 static std::optional<bool> isStandardBase(StringRef Thrown, StringRef Handler) {
   if (Handler == "St9exception")
     return true;
@@ -77,11 +77,11 @@ std::optional<bool> isTakenBy(ThrownType Thrown, const Constant *Handler) {
       return true;
     if (N > MaxBases)
       return std::nullopt;
-    if (Name.size() == 1) // int, double and so on: nothing else takes them
+    if (Name.size() == 1) // int, double and so on: no other type catches them
       continue;
     if (Type->hasInitializer()) {
-      // Behind its table and its name an object has those of the bases; that
-      // of a pointer has what it points to, and converts in more ways.
+      // An object has the bases of its type after its table and its name. A
+      // pointer has what it points to, and converts in more ways.
       if (Name.starts_with("P"))
         return std::nullopt;
       for (const Use &Base : Type->getInitializer()->operands())
@@ -100,8 +100,8 @@ std::optional<bool> isTakenBy(ThrownType Thrown, const Constant *Handler) {
   return Sure ? std::optional<bool>(false) : std::nullopt;
 }
 
-/// True where \p Call, in case it throws a \p Type, is left for the caller of
-/// its function.
+/// True if an exception of \p Type thrown by \p Call is not caught in its
+/// function.
 static bool escapes(const CallBase &Call, ThrownType Type) {
   const auto *Invoke = dyn_cast<InvokeInst>(&Call);
   if (!Invoke)
@@ -141,8 +141,8 @@ bool ThrowsResult::leaves(const CallBase &Call) const {
          It->second.contains(const_cast<CallBase *>(&Call));
 }
 
-/// Adds \p Type; of too many none is told apart, and it becomes null. True
-/// where it is new.
+/// Adds \p Type. If there are too many types, they are all replaced by null.
+/// True if it is new.
 static bool addType(ThrowsResult::Types &To, ThrownType &Type) {
   if (is_contained(To, Type) || is_contained(To, nullptr))
     return false;
@@ -173,7 +173,7 @@ Throws::Result Throws::run(Module &M, ModuleAnalysisManager &AM) {
                        ? nullptr
                        : dyn_cast<GlobalVariable>(Call.getArgOperand(1)));
       }
-  // From each throw up through the calls, a type at a time.
+  // From each throw up through the calls, one type at a time.
   for (size_t N = 0; N < Work.size(); ++N) {
     auto [Call, Type] = Work[N];
     if (Call->doesNotThrow() || !addType(R.ByCall[Call], Type) ||

@@ -1,11 +1,12 @@
-//===- Throws.h - Which calls throw, as the source says -------------------===//
+//===- Throws.h - Which calls throw, according to the source --------------===//
 //
-// A `throw` in the user's own code leaves its function, and those that call it,
-// until a handler takes it. What stands behind such a call is reached only if
-// nothing is thrown: it depends on the call as it would on a predicate.
+// A `throw` in user code leaves its function, and those that call it, until a
+// handler catches it. Code behind such a call is reached only if nothing is
+// thrown: it depends on the call as on a predicate.
 //
-// Functions without a body are not taken to throw, nor is a library's own check
-// (std::vector::at): nobody who reads the source means those.
+// Functions without a body do not count as throwing, and neither do checks
+// inside a library (std::vector::at): a reader of the source does not think of
+// them.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_THROWS_H
@@ -20,26 +21,27 @@
 
 namespace tpc {
 
-/// The type of what is thrown: its `_ZTI` object; null where it is not known,
-/// since a handler throws on what it has.
+/// The type that is thrown: its `_ZTI` object; null if it is not known, since a
+/// handler rethrows what it caught.
 using ThrownType = const llvm::GlobalVariable *;
 
-/// True where a handler for \p Handler (null: for all) takes a \p Thrown; none
-/// where the unit does not say.
+/// True if a handler for \p Handler (null: for all types) catches a \p Thrown;
+/// none if the link unit does not say.
 std::optional<bool> isTakenBy(ThrownType Thrown, const llvm::Constant *Handler);
 
-/// True for `throw X;` and `throw;`, wherever they stand.
+/// True for `throw X;` and `throw;` in any code.
 bool isThrow(const llvm::Instruction &I);
 
 class ThrowsResult {
 public:
   using Types = llvm::SmallVector<ThrownType, 2>;
 
-  /// What \p I throws: a `throw` of the user's, or a call that leads to one.
+  /// The types that \p I throws: \p I is a `throw` in user code, or a call that
+  /// leads to one.
   llvm::ArrayRef<ThrownType> thrownBy(const llvm::Instruction &I) const;
   /// The instructions by which exceptions leave \p F.
   llvm::ArrayRef<llvm::CallBase *> leaving(const llvm::Function *F) const;
-  /// True where \p Call is one of those of its function.
+  /// True if an exception can leave its function at \p Call.
   bool leaves(const llvm::CallBase &Call) const;
 
 private:

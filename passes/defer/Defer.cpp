@@ -1,10 +1,11 @@
-//===- Defer.cpp - The compiler's own passes wait for the link ------------===//
+//===- Defer.cpp - Postpones optimisation to the link ---------------------===//
 //
-// A plugin for clang. What the files of a link unit are analysed as is what
-// clang made of the source, so of its passes none runs but those that must; the
-// rest does at the link (PrelinkPass). What that would keep alive is given up
-// here: an optimised file no longer has the inline functions that went into
-// their callers, and an executable or library has then not to export them.
+// A plugin for clang. The link analyses the code as clang generated it from the
+// source, so clang runs only those passes that it must; PrelinkPass runs the
+// rest at the link. This plugin also makes up for two effects of optimisation
+// that would be missed: an optimised file no longer contains the inline
+// functions that were inlined everywhere, and the executable or library then
+// does not export them.
 //
 //===----------------------------------------------------------------------===//
 #include "support/Compat.h"
@@ -18,8 +19,8 @@
 using namespace llvm;
 using namespace tpc;
 
-/// True where \p F is only ever called. Where no file of a link unit asks for
-/// its address, nobody can tell which copy of an inline function is called.
+/// True if \p F is only called. If no file of a link unit takes the address of
+/// an inline function, nobody can tell which copy of it is called.
 static bool isOnlyCalled(const Function &F) {
   return all_of(F.uses(), [](const Use &U) {
     const auto *Call = dyn_cast<CallBase>(U.getUser());
@@ -27,9 +28,9 @@ static bool isOnlyCalled(const Function &F) {
   });
 }
 
-/// True where the body of \p F is in a header of the system's or of ROS: who
-/// calls it has it as well. Of one that stands elsewhere there may be no other
-/// body: that of a template in a source file, say.
+/// True if the body of \p F is in a system or ROS header: every caller has a
+/// copy of it. A function from another file may have no other copy, such as a
+/// template in a source file.
 static bool isOfSystem(const Function &F) {
   const DISubprogram *SP = F.getSubprogram();
   if (!SP)
@@ -41,8 +42,9 @@ static bool isOfSystem(const Function &F) {
       [&](StringRef Folder) { return StringRef(Path).starts_with(Folder); });
 }
 
-/// True while a file with coroutines is compiled. The passes that must run take
-/// half of a coroutine apart, and the rest of it cannot be left to the link.
+/// True while a file with coroutines is compiled. The passes that must run
+/// split coroutines halfway, and the rest of that work cannot wait for the
+/// link.
 static bool HasCoroutines = false;
 
 namespace {
@@ -52,10 +54,11 @@ struct PrepareForLink : PassInfoMixin<PrepareForLink> {
   PreservedAnalyses run(Module &M, ModuleAnalysisManager &) {
     HasCoroutines = false;
     for (Function &F : M) {
-      // Has the linker export no inline function for the sake of its address.
+      // The linker need not export an inline function whose address is never
+      // compared.
       if (F.hasLinkOnceODRLinkage() && isOnlyCalled(F) && isOfSystem(F))
         F.setUnnamedAddr(GlobalValue::UnnamedAddr::Global);
-      // The passes of sanitizers are among those that must run.
+      // Sanitizer passes are among those that must run.
       for (Attribute::AttrKind Kind :
            {Attribute::SanitizeAddress, Attribute::SanitizeHWAddress,
             Attribute::SanitizeMemory, Attribute::SanitizeThread})
@@ -74,10 +77,11 @@ static void registerPasses(PassBuilder &PB) {
       });
   if (PassInstrumentationCallbacks *Callbacks =
           PB.getPassInstrumentationCallbacks())
-    Callbacks->registerShouldRunOptionalPassCallback([](StringRef Pass, Any) {
-      return HasCoroutines && (Pass == "ModuleInlinerWrapperPass" ||
-                               Pass == "DevirtSCCRepeatedPass");
-    });
+    Callbacks->registerShouldRunOptionalPassCallback(
+        [](StringRef Pass, const Any &) {
+          return HasCoroutines && (Pass == "ModuleInlinerWrapperPass" ||
+                                   Pass == "DevirtSCCRepeatedPass");
+        });
 }
 
 extern "C" LLVM_ATTRIBUTE_WEAK PassPluginLibraryInfo llvmGetPassPluginInfo() {

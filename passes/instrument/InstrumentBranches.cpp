@@ -22,8 +22,8 @@ STATISTIC(NumReports, "Reports inserted");
 /// `void log_one(char *key, bool result, double cmp, double thresh, bool res)`
 static constexpr StringLiteral LogName = "_Z7log_onePcbddb";
 
-/// The instruction that a report on the value of \p I stands before; null where
-/// no place is reached from \p I alone.
+/// The instruction before which the value of \p I is reported; null if no place
+/// follows \p I alone.
 static Instruction *insertionPointAfter(Instruction &I) {
   if (auto *Invoke = dyn_cast<InvokeInst>(&I)) {
     BasicBlock *Next = Invoke->getNormalDest();
@@ -35,9 +35,8 @@ static Instruction *insertionPointAfter(Instruction &I) {
   return I.getNextNode();
 }
 
-/// What \p V is the outcome of, without negations: clang itself turns the
-/// branches of `if (!(a < b))` around, and an outcome that is stored negated is
-/// to be reported alike.
+/// \p V without negations. Clang inverts the branches of `if (!(a < b))`, and
+/// an outcome that is stored negated must be reported in the same way.
 static Value *withoutNegation(Value *V) {
   for (Value *Next = V; auto *I = dyn_cast<Instruction>(Next);) {
     bool Negates = I->getOpcode() == Instruction::Xor &&
@@ -53,7 +52,7 @@ static Value *withoutNegation(Value *V) {
   return V;
 }
 
-/// The outcome of \p Predicate in the program that is instrumented.
+/// The outcome of \p Predicate in the instrumented program.
 static Value *outcomeOf(const Instruction &Predicate,
                         const AnalysedModule &Analysed) {
   Value *Outcome = Analysed.original(withoutNegation(conditionOf(Predicate)));
@@ -62,9 +61,10 @@ static Value *outcomeOf(const Instruction &Predicate,
                        const_cast<Instruction *>(&Predicate))));
 }
 
-/// The truth value that \p V, another one, is joined into by itself alone: what
-/// its function goes on with. It is that of the program that is instrumented;
-/// null where that has neither the joined one nor \p V.
+/// Follows \p V through bitwise operations, conversions and comparisons with
+/// constants as long as it has a single use: the function continues with the
+/// last value. Returns the counterpart of the last value that has one in the
+/// instrumented program; null if not even \p V has one.
 static Instruction *findJoined(Value *V, const AnalysedModule &Analysed) {
   SmallVector<Value *, 4> Chain{V};
   while (V->hasOneUse()) {
@@ -82,7 +82,7 @@ static Instruction *findJoined(Value *V, const AnalysedModule &Analysed) {
   return nullptr;
 }
 
-/// The report on a flag, a switch or text: there is but one value.
+/// Plans the report of a flag, a switch or text, which has only one value.
 static bool planFlag(const Comparison &C, bool IsUnsigned,
                      const AnalysedModule &Analysed, Report &R) {
   auto *Predicate = cast<Instruction>(Analysed.original(C.Predicate));
@@ -106,8 +106,8 @@ static bool planFlag(const Comparison &C, bool IsUnsigned,
     R.Switch = nullptr;
   }
   R.Outcome = IsText ? Flag : R.Result;
-  // An integer that stands as a condition is compared with zero: the value
-  // itself says more than the outcome.
+  // An integer used as a condition is compared with zero; its value says more
+  // than the outcome.
   if (auto *NotZero = dyn_cast<CmpInst>(Flag); NotZero && !IsText)
     Flag = NotZero->getOperand(isa<Constant>(NotZero->getOperand(0)) ? 1 : 0);
   R.Compared = R.Threshold = Flag;
@@ -122,7 +122,7 @@ std::optional<Report> planReport(const Comparison &C, bool IsUnsigned,
   auto *Predicate = cast_or_null<Instruction>(Analysed.original(C.Predicate));
   if (!Predicate)
     return std::nullopt;
-  // A program may have its own log_one, which would call itself without end.
+  // A program's own log_one would call itself without end.
   if (Predicate->getFunction()->getName() == LogName)
     return std::nullopt;
   if (!C.Compare)
@@ -134,8 +134,8 @@ std::optional<Report> planReport(const Comparison &C, bool IsUnsigned,
   R.Threshold = Compare->getOperand(C.Threshold);
   R.Compared = Compare->getOperand(1 - C.Threshold);
   R.Outcome = Compare;
-  // Equality does not say how its operands are to be read; what was widened
-  // with zeros was not negative.
+  // Equality does not say how its operands are to be read; a zero-extended
+  // operand was not negative.
   R.Signed = !Compare->isUnsigned() &&
              !(Compare->isEquality() &&
                (IsUnsigned || any_of(Compare->operands(), [](const Use &U) {
@@ -148,9 +148,11 @@ std::optional<Report> planReport(const Comparison &C, bool IsUnsigned,
     return R;
   }
   Instruction *Result = findJoined(C.Compare, Analysed);
+  assert(Result && "the comparison has a counterpart, so the chain has one");
   R.Result = Result;
-  R.Before = Result ? insertionPointAfter(*Result) : nullptr;
-  return R.Before ? std::optional(R) : std::nullopt;
+  R.Before = insertionPointAfter(*Result);
+  assert(R.Before && "only an invoke may end a block, and the chain has none");
+  return R;
 }
 
 /// \p V as a double.
@@ -173,7 +175,8 @@ static Value *toBool(IRBuilder<> &B, Value *V) {
                                 : B.CreateICmpNE(V, Constant::getNullValue(T));
 }
 
-/// Whether \p Switch takes a case that is written out.
+/// The outcome of \p Switch: whether it takes one of its cases and not the
+/// default.
 static Value *takesCase(IRBuilder<> &B, SwitchInst &Switch) {
   Value *Taken = B.getFalse();
   for (auto Case : Switch.cases())
@@ -194,8 +197,8 @@ static FunctionCallee logFunction(Module &M) {
     F->addParamAttr(1, Attribute::ZExt);
     F->addParamAttr(4, Attribute::ZExt);
     F->setDoesNotThrow();
-    // It sees nothing of the program but its key: what the program keeps in
-    // registers stays there across a report.
+    // log_one reads nothing of the program except the key, so the program may
+    // keep values in registers across a report.
     F->setMemoryEffects(MemoryEffects::inaccessibleOrArgMemOnly());
     F->addParamAttr(0, Attribute::ReadOnly);
     F->addParamAttr(0, noCapture(Ctx));
@@ -203,10 +206,11 @@ static FunctionCallee logFunction(Module &M) {
   return Callee;
 }
 
-/// The log library's word on whether reports are wanted. A program has it
-/// itself, weakly, where the library finds it, so that it takes one look and
-/// works without that library. A shared library asks the log library's, if it
-/// is there: nothing may point into what can be unloaded.
+/// The flag of the log library that says whether reports are wanted. A program
+/// defines it weakly, and the library finds that definition, so one load tells
+/// the program and it also works without the library. A shared library refers
+/// to the flag of the log library, if that is loaded: no pointer may lead into
+/// a library that can be unloaded.
 static GlobalVariable *wantedFlag(Module &M) {
   if (GlobalVariable *Wanted = M.getNamedGlobal("tpc_reporting"))
     return Wanted;
@@ -220,8 +224,8 @@ static GlobalVariable *wantedFlag(Module &M) {
                             "tpc_reporting");
 }
 
-/// `if (tpc_reporting) log_one(...)`, a function that the optimiser puts in the
-/// place of its calls: a program whose reports are off pays for a branch.
+/// `if (tpc_reporting) log_one(...)` as a function that the optimiser inlines:
+/// a program whose reports are off pays for one branch.
 static Function *reportFunction(Module &M, FunctionCallee Log) {
   LLVMContext &Ctx = M.getContext();
   auto *F = Function::Create(Log.getFunctionType(),

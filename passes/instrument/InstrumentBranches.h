@@ -1,8 +1,8 @@
-//===- InstrumentBranches.h - Puts the reports into the program -----------===//
+//===- InstrumentBranches.h - Inserts the reports -------------------------===//
 //
-// Thesis A.13: before each predicate of a threshold predicate comparison a
-// call of log_one with the key, the outcomes and both values. The only code of
-// TPC that changes what a program does.
+// Thesis A.13: inserts a call of log_one before each predicate of a threshold
+// predicate comparison, with the key, the outcomes and both values. No other
+// code of TPC changes what a program does.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_INSTRUMENTBRANCHES_H
@@ -17,33 +17,33 @@
 
 namespace tpc {
 
-/// A report to insert, in terms of the program that is instrumented.
+/// A report to insert, in terms of the instrumented program.
 struct Report {
   std::string Key;
-  /// Before this instruction.
+  /// The instruction before which the report is inserted.
   llvm::Instruction *Before;
   llvm::Value *Result; ///< the predicate's outcome (any integer)
-  /// Where the predicate is a switch, whose outcome is whether it takes a case.
+  /// If the predicate is a switch: its outcome is whether it takes a case.
   llvm::SwitchInst *Switch = nullptr;
-  llvm::Value *Compared; ///< what is compared with the threshold
+  llvm::Value *Compared; ///< the value that is compared with the threshold
   llvm::Value *Threshold;
-  llvm::Value *Outcome; ///< the comparison's outcome
-  bool Signed;          ///< how integers are to be read
+  llvm::Value *Outcome; ///< the outcome of the comparison
+  bool Signed;          ///< whether integers are signed
 };
 
-/// The report for \p C, or none where a value of the analysed program has no
-/// counterpart in the original. \p IsUnsigned says so of the parameter's type.
-/// Where the operands do not come to the predicate, the report stands where the
-/// comparison is evaluated, and has as outcome of the predicate that of all
-/// that is joined there without control flow.
+/// The report for \p C; none if a value of the analysed program has no
+/// counterpart in the original program. \p IsUnsigned says whether the type of
+/// the parameter is unsigned. If the operands do not reach the predicate, the
+/// report stands where the comparison is evaluated; its outcome of the
+/// predicate is then that of everything joined there without control flow.
 std::optional<Report> planReport(const Comparison &C, bool IsUnsigned,
                                  const AnalysedModule &Analysed);
 
-/// Inserts \p Reports. Where the module does not verify afterwards, takes them
-/// out again and returns why; else returns nothing.
+/// Inserts \p Reports. If the module does not verify afterwards, removes them
+/// and returns the reason; otherwise returns an empty string.
 std::string insertReports(llvm::Module &M, llvm::ArrayRef<Report> Reports);
 
-/// `print<tpc-instrument-branches>`: where reports would be put.
+/// `print<tpc-instrument-branches>`: prints where reports would be inserted.
 class InstrumentBranchesPrinter
     : public llvm::PassInfoMixin<InstrumentBranchesPrinter> {
 public:

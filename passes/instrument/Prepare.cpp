@@ -33,13 +33,14 @@ STATISTIC(NumCopied, "Copies of functions for single calls");
 
 namespace tpc {
 
-/// Accessors, iterators and smart pointers are smaller at -O0; larger functions
-/// are no part of their caller's line.
+/// Accessors, iterators and smart pointers are smaller than this at -O0. A
+/// larger function is not part of its caller's line.
 static cl::opt<unsigned>
     MaxInlined("tpc-max-inlined", cl::Hidden, cl::init(100),
                cl::desc("Instructions of a library function that is inlined"));
 
-/// The instructions of \p F without the marks that only some levels have.
+/// The instructions of \p F without markers that only some optimisation levels
+/// add.
 static unsigned sizeOf(const Function &F) {
   return count_if(instructions(F), [](const Instruction &I) {
     return !isa<AssumeInst>(I) && !I.isDebugOrPseudoInst() &&
@@ -47,8 +48,8 @@ static unsigned sizeOf(const Function &F) {
   });
 }
 
-/// Marks the small functions of libraries in \p M to be inlined; returns those
-/// that were not marked before. What the rules speak of stays a call.
+/// Marks the small library functions in \p M for inlining; returns those that
+/// were not marked before. Functions that a rule describes stay calls.
 static SmallVector<WeakVH, 0>
 markSmallLibraryFunctions(Module &M, const Options &Opts,
                           std::shared_ptr<const Rules> Tables) {
@@ -68,10 +69,10 @@ markSmallLibraryFunctions(Module &M, const Options &Opts,
   return Marked;
 }
 
-/// Inlines what is marked to be, and makes values of locals.
+/// Inlines the marked functions and promotes locals to values.
 static void inlineMarked(Module &M) {
-  // Managers of its own: the module is a copy that no other pass sees, and is
-  // changed before it is analysed.
+  // It has managers of its own: no other pass sees the module, a copy, and it
+  // is changed before it is analysed.
   PassBuilder PB;
   LoopAnalysisManager LAM;
   FunctionAnalysisManager FAM;
@@ -89,9 +90,9 @@ static void inlineMarked(Module &M) {
   MPM.run(M, MAM);
 }
 
-/// Makes loads and stores of what reads and writes memory in one go. That no
-/// other thread comes between is nothing to the analysis; that others see what
-/// is stored is.
+/// Replaces atomic read-modify-write instructions by a load and a store. The
+/// analysis does not need the atomicity; it needs that other threads see the
+/// stored value.
 static void takeAtomicsApart(Module &M) {
   for (Function &F : definedFunctions(M))
     for (Instruction &I : make_early_inc_range(instructions(F))) {
@@ -109,12 +110,12 @@ static void takeAtomicsApart(Module &M) {
     }
 }
 
-/// Makes \p M fit for the analysis.
+/// Makes \p M ready for the analysis.
 static void prepare(Module &M, const Options &Opts,
                     std::shared_ptr<const Rules> Tables) {
   takeAtomicsApart(M);
-  // Only there may a value be computed from itself, and following it back would
-  // not end.
+  // Only in unreachable code may a value be computed from itself; following
+  // such a value back would never end.
   for (Function &F : definedFunctions(M))
     EliminateUnreachableBlocks(F);
   SmallVector<WeakVH, 0> Marked =
@@ -125,7 +126,7 @@ static void prepare(Module &M, const Options &Opts,
       cast<Function>(F)->removeFnAttr(Attribute::AlwaysInline);
 }
 
-/// Takes away the marks of -O0.
+/// Removes the attributes of -O0.
 static void allowOptimisation(Module &M) {
   for (Function &F : M)
     if (F.hasFnAttribute(Attribute::OptimizeNone)) {
@@ -134,7 +135,7 @@ static void allowOptimisation(Module &M) {
     }
 }
 
-/// Has calls of another name of a function call it by its own: above -O0 the
+/// Replaces calls of an alias by calls of the function: above -O0 the
 /// constructors of a class are one function with two names.
 static void callByOwnName(Module &M) {
   for (GlobalAlias &Alias : M.aliases())
@@ -146,9 +147,10 @@ static void callByOwnName(Module &M) {
       });
 }
 
-/// True where a copy of \p F in place of \p F cannot be told from it: another
-/// link unit may have the one that counts, the addresses of labels, which a
-/// table outside may hold, stay those of \p F, and assembly may define names.
+/// True if a copy of \p F can stand for \p F. It cannot if another link unit
+/// may hold the definition that counts, if the addresses of labels are taken (a
+/// table elsewhere may hold them) or if it contains assembly, which may define
+/// symbols.
 static bool mayBeCopied(const Function &F) {
   return !F.isDeclarationForLinker() && !F.isInterposable() &&
          none_of(F,
@@ -162,8 +164,8 @@ static bool mayBeCopied(const Function &F) {
          });
 }
 
-/// The calls of \p F outside of it, in the order of the module: the users of a
-/// value are in none that two copies of a module share.
+/// The calls of \p F from other functions, in the order of the module: the
+/// order of a use list differs between two copies of a module.
 static SmallVector<CallBase *, 8> callsOf(Function &F) {
   SmallPtrSet<CallBase *, 8> Calls;
   SmallPtrSet<Function *, 8> Callers;
@@ -184,8 +186,8 @@ static SmallVector<CallBase *, 8> callsOf(Function &F) {
   return Ordered;
 }
 
-/// Inlines the functions whose comparisons are their callers' in \p M. True
-/// where there are some.
+/// Inlines the functions in \p M whose comparisons count as their callers'.
+/// True if there are any.
 static bool inlineTransparent(Module &M, const Rules &Tables) {
   bool Inlined = false;
   for (Function &F : definedFunctions(M)) {
@@ -204,14 +206,14 @@ static bool inlineTransparent(Module &M, const Rules &Tables) {
   return Inlined;
 }
 
-/// The copies stay in the program: they may not make it noticeably larger.
+/// The copies stay in the program, so they must not make it noticeably larger.
 static cl::opt<unsigned> MaxAdded(
     "tpc-max-added", cl::Hidden, cl::init(50000),
     cl::desc("Instructions that copies of functions may add in one round"));
 
-/// A name for a copy of \p F, after \p Number, the last one's. It depends on
-/// the names in the module alone; what LLVM would add to one that is taken
-/// depends on how the module came about.
+/// A name for a copy of \p F; \p Number is the number of the last copy. It
+/// depends only on the names in the module. LLVM's own suffix for a name in use
+/// depends on the history of the module.
 static std::string copyName(const Function &F, unsigned &Number) {
   std::string Name;
   do
@@ -220,9 +222,9 @@ static std::string copyName(const Function &F, unsigned &Number) {
   return Name;
 }
 
-/// Gives each call of a function of \p Names in \p M a copy of the function, so
-/// that what one call hands it is not taken for what another does. True where
-/// something was copied.
+/// Gives each call of the functions \p Names in \p M its own copy of the
+/// function, so that the arguments of one call are not mixed with those of
+/// another. True if something was copied.
 static bool separateCalls(Module &M, ArrayRef<std::string> Names) {
   bool Changed = false;
   size_t Added = 0;
@@ -270,8 +272,8 @@ Separation::Effect Separation::applyTo(Module &M) const {
 // The copy that is analysed
 //===----------------------------------------------------------------------===//
 
-/// Has a copy of \p M share its debug information: nothing changes it, and to
-/// copy it takes longer than to copy the program.
+/// Lets the copy of \p M share its debug information: nothing changes it, and
+/// copying it takes longer than copying the program.
 static void shareDebugInfo(const Module &M, ValueToValueMapTy &Map) {
   DebugInfoFinder Finder;
   Finder.processModule(M);
@@ -293,8 +295,8 @@ AnalysedModule::AnalysedModule(Module &M, const Options &Opts,
 }
 
 bool AnalysedModule::copy() {
-  // Not on the stack: a crash below leaves this function without unwinding, and
-  // the values of M know the map.
+  // Allocated on the heap: after a crash this function is left without
+  // unwinding, and the values of M refer to the map.
   auto Map = std::make_unique<ValueToValueMapTy>();
   shareDebugInfo(M, *Map);
   std::unique_ptr<Module> Next = CloneModule(M, *Map);
@@ -309,7 +311,7 @@ bool AnalysedModule::copy() {
 }
 
 void AnalysedModule::prepareCopy() {
-  // A handle that is moved takes itself out of a list and into it again.
+  // Moving a handle removes it from a list and adds it again.
   Instructions.reserve(Copy->getInstructionCount());
   Opcodes.reserve(Instructions.capacity());
   for (Function &F : *Copy)
@@ -348,16 +350,16 @@ bool AnalysedModule::bringBack() {
   for (auto [I, Now] : zip_equal(There, Instructions))
     if (isa<AllocaInst>(I) && !Now)
       Promoted.insert(I);
-  // What only keeps a local in memory that promotion took away has nothing that
-  // corresponds to it: what took its place stands for something else.
+  // An instruction that only kept a promoted local in memory has no
+  // counterpart: its replacement stands for something else.
   auto IsPromoted = [&](const Instruction &I) {
     const Value *Pointer = getLoadStorePointerOperand(&I);
     while (const auto *GEP = dyn_cast_or_null<GEPOperator>(Pointer))
       Pointer = GEP->getPointerOperand();
     return Pointer && Promoted.contains(Pointer);
   };
-  // In the order of the program an instruction itself comes before those that
-  // it stands in for.
+  // In the order of the program, an instruction comes before those that it
+  // replaces.
   for (auto [I, Handle] : zip_equal(There, Instructions)) {
     Value *Now = Handle;
     if (auto *C = dyn_cast_or_null<Instruction>(Now);

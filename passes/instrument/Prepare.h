@@ -1,11 +1,11 @@
-//===- Prepare.h - The program as it is analysed --------------------------===//
+//===- Prepare.h - Makes the copy that is analysed ------------------------===//
 //
-// The analysis wants local variables as SSA values, and small functions of
-// libraries (a message's accessors, std::max, a smart pointer's arrow) inside
-// their callers, so that each use of them stands for itself. That is done to a
-// copy, and what is found is carried back: what the user gets is the program as
-// the compiler would have made it without us, at every level. The findings are
-// the same at every level, too.
+// The analysis needs local variables as SSA values, and small library functions
+// (accessors of messages, std::max, the arrow of a smart pointer) inlined, so
+// that each use is analysed by itself. This is done to a copy, and the findings
+// are mapped back: the user gets the program that the compiler would have built
+// without TPC, at every optimisation level. The findings are also the same at
+// every level.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_PREPARE_H
@@ -24,17 +24,17 @@ namespace tpc {
 struct Options;
 class Rules;
 
-/// What is done to a program before reports can be put into it, because a
-/// report inside a function stands for all of its calls: functions whose
-/// comparisons are their callers' are inlined, and functions whose calls are to
-/// be told apart are copied for each of them. Done to two copies of a program
-/// it leaves two copies of one.
+/// Changes a program before reports are inserted, because a report inside a
+/// function stands for all of its calls. Functions whose comparisons count as
+/// their callers' are inlined, and functions whose calls must be distinguished
+/// are copied for each call. Applied to two copies of a program, the results
+/// are again the same program.
 class Separation {
 public:
-  /// \p Tables name the functions that are inlined.
+  /// \p Tables name the functions to inline.
   explicit Separation(const Rules &Tables) : Tables(Tables) {}
-  /// Has the calls of each function of \p Names told apart, after what was
-  /// asked for before.
+  /// Also copies each function of \p Names for each of its calls, after
+  /// everything added before.
   void add(std::vector<std::string> Names) {
     Rounds.push_back(std::move(Names));
   }
@@ -43,7 +43,7 @@ public:
   /// What applyTo did.
   struct Effect {
     bool Any = false;
-    bool LastRound = false; ///< what was asked for last did something
+    bool LastRound = false; ///< the names added last had an effect
   };
   Effect applyTo(llvm::Module &M) const;
 
@@ -52,7 +52,8 @@ private:
   std::vector<std::vector<std::string>> Rounds;
 };
 
-/// The module to analyse for a module to instrument, which stays as it is.
+/// The analysed copy of a module to instrument. The original module does not
+/// change.
 class AnalysedModule {
 public:
   AnalysedModule(llvm::Module &M, const Options &Opts,
@@ -60,22 +61,22 @@ public:
 
   llvm::Module &module() { return *Copy; }
 
-  /// Starts anew with the calls of each of \p Names told apart. False, and
-  /// nothing has changed, where there are none that can be.
+  /// Starts again with copies of each of \p Names. If none of them can be
+  /// copied, returns false and changes nothing.
   bool separate(std::vector<std::string> Names);
 
-  /// True where bringBack() changes the module that was copied.
+  /// True if bringBack() changes the original module.
   bool isSeparated() const { return IsSeparated; }
-  /// Does to \p M, the module that was copied, what separate() asked for, and
-  /// finds the counterparts of the values of the analysed module there. False
-  /// where that is not the same program.
+  /// Applies everything that separate() did to the original module \p M, and
+  /// maps the values of the analysed copy to it. False if the two are then not
+  /// the same program.
   bool bringBack();
-  /// After bringBack(): what \p V of the analysed module is in the original;
-  /// null where it is nothing there (a value that promotion made).
+  /// After bringBack(): the value of the original module for \p V; null if
+  /// there is none (\p V was made by promotion).
   llvm::Value *original(llvm::Value *V) const;
 
 private:
-  /// True where what was asked for last did something.
+  /// True if the names added last had an effect.
   bool copy();
   void prepareCopy();
 
@@ -85,19 +86,19 @@ private:
   Separation Calls;
   std::unique_ptr<llvm::Module> Copy;
   bool IsSeparated = false;
-  /// The instructions of Copy as it was before it was prepared, in their order;
-  /// what promotion replaced them with, or null.
+  /// The instructions that Copy had before it was prepared, in order. Each is
+  /// now null or the value that promotion put in its place.
   std::vector<llvm::WeakTrackingVH> Instructions;
-  std::vector<unsigned char> Opcodes; ///< of these, as they were
+  std::vector<unsigned char> Opcodes; ///< their opcodes at that time
   llvm::DenseMap<const llvm::Value *, llvm::Value *> Back;
 };
 
-/// The functions of \p M, a prepared module, in which the name of a parameter
+/// The functions of the prepared module \p M in which the name of a parameter
 /// depends on the call; callers before callees.
 std::vector<std::string> namedByCalls(llvm::Module &M,
                                       llvm::ModuleAnalysisManager &AM);
 
-/// `tpc-prepare`: the same to a whole module, for the printers.
+/// `tpc-prepare`: prepares a whole module, for the printers.
 class PreparePass : public llvm::PassInfoMixin<PreparePass> {
 public:
   llvm::PreservedAnalyses run(llvm::Module &M, llvm::ModuleAnalysisManager &AM);

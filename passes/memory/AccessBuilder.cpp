@@ -1,4 +1,4 @@
-//===- AccessBuilder.cpp - Files the accesses -----------------------------===//
+//===- AccessBuilder.cpp - Records the accesses ---------------------------===//
 #include "memory/AccessBuilder.h"
 
 #include "support/Budget.h"
@@ -28,7 +28,7 @@ void AccessBuilder::addCopy(Instruction &I, Locations To, Locations From) {
   R.Copies.push_back({&I, std::move(To), std::move(From)});
 }
 
-/// What \p Call, a container's method, is handed goes into the elements: the
+/// The arguments of \p Call, a container method, go into the elements: the
 /// objects themselves, and the elements of other containers.
 void AccessBuilder::putInto(CallBase &Call) {
   const Value *Container = containerOf(Call);
@@ -44,8 +44,8 @@ void AccessBuilder::putInto(CallBase &Call) {
   }
 }
 
-/// The object that \p Call is a method of, where that leaves the object alone:
-/// it is const, or a container's that puts nothing in.
+/// The object that \p Call leaves unchanged: \p Call is a const method, or a
+/// container method that adds no elements.
 static const Value *constantObject(const CallBase &Call,
                                    const ContainerMethod *Method) {
   const Function *Callee = Call.getCalledFunction();
@@ -54,8 +54,8 @@ static const Value *constantObject(const CallBase &Call,
   return IsConst ? containerOf(Call) : nullptr;
 }
 
-/// The container that \p Call, a method of it, puts its arguments into: it does
-/// not write them, unless they are containers that give up their elements.
+/// The container that \p Call, a method of it, puts its arguments into. The
+/// arguments are not written, except containers that give up their elements.
 static const Value *filledBy(const CallBase &Call,
                              const ContainerMethod *Method) {
   const Function *Callee = Call.getCalledFunction();
@@ -68,8 +68,8 @@ static const Value *filledBy(const CallBase &Call,
   return containerOf(Call);
 }
 
-/// What \p Call, of which the rules say \p Row, always gives a new value: the
-/// variable of a read that has a default, and text that is made or assigned.
+/// The object to which \p Call, described by \p Row, always gives a new value:
+/// the variable of a read with a default, or text that is made or assigned.
 static const Value *alwaysReplaced(const CallBase &Call, const Rule &Row) {
   if (Row.Kind == Rule::Read && Row.Value && Row.Default)
     return argument(Call, Row, Row.Value);
@@ -78,7 +78,7 @@ static const Value *alwaysReplaced(const CallBase &Call, const Rule &Row) {
   return nullptr;
 }
 
-/// Files that \p Call replaces what is at \p Pointer.
+/// Records that \p Call replaces the object at \p Pointer.
 void AccessBuilder::fileReplacing(CallBase &Call, const Value *Pointer) {
   const Locations Where = Pointers.handed(Pointer, /*IsOne=*/true);
   if (Where.empty())
@@ -94,8 +94,8 @@ void AccessBuilder::fileReplacing(CallBase &Call, const Value *Pointer) {
     R.Replaced[&Call] = Where.front();
 }
 
-/// True where argument \p N of \p Call leads to one object, not into an array:
-/// the object of a method, and the variable of a read.
+/// True if argument \p N of \p Call points to a single object, not into an
+/// array: the object of a method, or the variable of a read.
 static bool takesOne(const CallBase &Call, unsigned N, const Rule *Row) {
   if (Row && Row->Kind == Rule::Read && Row->Value &&
       argument(Call, *Row, Row->Value) == Call.getArgOperand(N))
@@ -105,9 +105,9 @@ static bool takesOne(const CallBase &Call, unsigned N, const Rule *Row) {
          Callee->getName().starts_with("_ZN");
 }
 
-/// What \p Call can write to.
+/// Records what \p Call can write.
 void AccessBuilder::fileCall(CallBase &Call) {
-  // What is only asked about its text is not written.
+  // Calls that only query a text do not write it.
   const Rule *Row = Rules.match(Call);
   if (Row && Row->Kind == Rule::Text && Row->Relation != "copy")
     return;

@@ -1,7 +1,7 @@
 //===- AccessBuilder.h - Fills an AccessIndex -----------------------------===//
 //
-// Goes through the module once and files the loads, stores, copies and calls by
-// what their pointers lead to.
+// Visits the module once and records loads, stores, copies and calls by the
+// locations that their pointers lead to.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_ACCESSBUILDER_H
@@ -20,7 +20,7 @@ public:
                 llvm::Module &M)
       : R(R), Pointers(Pointers), Calls(Calls), Rules(Rules), M(M) {}
 
-  /// Files what reads and writes.
+  /// Records all accesses.
   void fileAccesses();
 
 private:

@@ -12,14 +12,15 @@ namespace tpc {
 
 AnalysisKey ClassObjectAccess::Key;
 
-/// Messages are copied from queue to queue; each copy is searched for accesses.
+/// Messages are copied from queue to queue, and each copy is searched for
+/// accesses.
 static cl::opt<unsigned> MaxCopied(
     "tpc-max-object-copies", cl::Hidden, cl::init(16),
     cl::desc(
         "Variables that a value is followed to by copies of whole objects"));
 
-/// \p L and the variables that copies of whole objects put its value into, or
-/// with \p Backward took it from.
+/// \p L and the variables to which copies of whole objects bring its value or,
+/// with \p Backward, from which they take it.
 const Locations &AccessIndex::throughCopies(const Location &L, bool Backward) {
   auto [It, New] = (Backward ? this->Backward : Forward).try_emplace(L);
   Locations &All = It->second;
@@ -71,7 +72,7 @@ AccessIndex::writesOf(const Location &L) {
   Found<Writes> Out;
   const Locations &All = throughCopies(L, /*Backward=*/true);
   for (const Location &Here : All) {
-    // Several fields that are read as one, in a register: any of them.
+    // Several fields that are read together in a register: any of them.
     if (isa_and_nonnull<StructType>(elementOf(Types.typeAt(Here))))
       for (Instruction *Write : writesInto(Here))
         if (isa<StoreInst>(Write))

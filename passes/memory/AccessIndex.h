@@ -2,10 +2,10 @@
 //
 // Thesis A.6: field -> its loads and stores. Here a variable is a Location: a
 // field of any object of its class, or a global or local variable or a part of
-// one. Copies of whole objects lead on to the variables that they are made of.
+// one. Copies of whole objects connect variables.
 //
-// All accesses of the module that can meet are told, whatever comes first; who
-// sees what is VisibleWrites.h.
+// All accesses that may touch the same memory are listed, in whatever order
+// they run; VisibleWrites.h decides which write a read sees.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_ACCESSINDEX_H
@@ -22,14 +22,13 @@
 namespace tpc {
 
 /// A load, a store, a copy of a whole object, or a call that gets a pointer to
-/// it and whose body is not known.
+/// the object and whose body is not known.
 struct Access {
   llvm::Instruction *I;
   Location Where;
 };
 
-/// A call that gives the \c Bytes at \c Pointer a new value, whatever was
-/// there.
+/// A call that always gives the \c Bytes at \c Pointer a new value.
 struct Replacement {
   const llvm::CallBase *Call;
   const llvm::Value *Pointer;
@@ -48,37 +47,37 @@ public:
 
   using Writes = llvm::SmallSetVector<llvm::Instruction *, 8>;
   using Reads = llvm::SmallSetVector<llvm::LoadInst *, 8>;
-  /// Accesses of a variable itself, and of what copies of whole objects bring
-  /// there or take from there.
+  /// Accesses of a variable itself, and of the variables that copies of whole
+  /// objects connect it with.
   template <typename Set> struct Found {
     Set Own, Copied;
   };
   /// The writes that can give the variable at \p L its value: stores, and calls
-  /// without a body that are handed the variable.
+  /// without a body that get a pointer to it.
   Found<Writes> writesOf(const Location &L);
-  /// The loads that can find the value of the variable at \p L.
+  /// The loads that can read the value of the variable at \p L.
   Found<Reads> readsOf(const Location &L);
 
-  /// True where copies of whole objects can bring what is at \p From to \p To,
-  /// or the two can be the same.
+  /// True if copies of whole objects can bring the value at \p From to \p To,
+  /// or the two can be the same variable.
   bool reaches(const Location &From, const Location &To);
-  /// The copies of whole objects by which \p L, or what is copied to it, gets
-  /// its value.
+  /// The copies of whole objects that give \p L, or variables copied to it, a
+  /// value.
   llvm::SmallVector<llvm::Instruction *, 4> copiesTo(const Location &L);
 
-  /// The writes of what is in the object at \p L, with what each writes: stores
-  /// and copies, and calls that are handed the object or a part of it.
+  /// The writes into the object at \p L, with the location of each: stores,
+  /// copies, and calls that get a pointer to the object or to a part of it.
   llvm::SmallVector<const Access *, 16> partsOf(const Location &L) const;
   /// The same, each instruction once.
   llvm::SmallVector<llvm::Instruction *, 8> writesInto(const Location &L) const;
 
   /// The calls that replace a variable.
   llvm::ArrayRef<Replacement> replacements() const { return Replacements; }
-  /// The one variable that \p Call replaces; null where it is none, or not
-  /// known which.
+  /// The one variable that \p Call replaces; null if it replaces none, or the
+  /// variable is not known.
   const Location *replacedBy(const llvm::Instruction &Call) const;
 
-  /// True where \p Arg is only put into a container.
+  /// True if \p Arg is only put into a container.
   bool isPutIn(const llvm::Use &Arg) const { return PutIn.contains(&Arg); }
 
 private:
@@ -94,17 +93,17 @@ private:
   llvm::SmallVector<Access, 0> Loads, Stores;
   llvm::SmallVector<Access, 0> Handed; ///< calls without a known body
   llvm::SmallVector<Copy, 0> Copies;
-  /// What was asked for before: where copies lead from and to a variable.
+  /// Cached results: the variables that copies connect with a variable.
   LocationMap<Locations> Backward, Forward;
   LocationIndex LoadIndex, StoreIndex, HandedIndex;
   ObjectIndex CopiesTo, CopiesFrom;
-  /// Of all writes, numbered as they stand in PartWrites.
+  /// Of all writes, numbered as in PartWrites.
   PartIndex WritesByObject;
   llvm::SmallVector<Access, 0> PartWrites;
   llvm::SmallVector<Replacement, 0> Replacements;
-  /// Calls that replace a whole variable, and which.
+  /// Calls that replace a whole variable, and that variable.
   llvm::DenseMap<const llvm::Instruction *, Location> Replaced;
-  /// Arguments that go into a container.
+  /// Arguments that are put into a container.
   llvm::DenseSet<const llvm::Use *> PutIn;
 };
 

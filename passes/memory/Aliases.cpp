@@ -24,8 +24,8 @@ Aliases::Aliases(Module &M, const CallGraphResult &Calls, LocationTypes &Types)
   findEscaped(M, Calls);
 }
 
-/// A local escapes where its address is stored or returned, or goes into a
-/// function that is looked into.
+/// A local escapes if its address is stored or returned, or passed to a
+/// function whose body is analysed.
 void Aliases::findEscaped(Module &M, const CallGraphResult &Calls) {
   for (Function &F : definedFunctions(M))
     for (Instruction &I : instructions(F)) {
@@ -42,7 +42,7 @@ void Aliases::findEscaped(Module &M, const CallGraphResult &Calls) {
         for (const Use &U : V->uses()) {
           const auto *User = cast<Instruction>(U.getUser());
           const auto *Call = dyn_cast<CallBase>(User);
-          // What is merged of pointers is followed like one of them.
+          // A merge of pointers is followed like one of them.
           if (isa<GEPOperator>(User) || isa<CastInst>(User) ||
               isa<PHINode>(User) || isa<SelectInst>(User) ||
               isa<FreezeInst>(User) || isa<InsertValueInst>(User) ||
@@ -77,7 +77,8 @@ std::optional<SmallVector<Step, 4>> Aliases::partOf(const Location &Object,
       return std::nullopt;
     return SmallVector<Step, 4>(Path.drop_front(Object.Path.size()));
   }
-  // One with a root and one without can only meet where that is reachable.
+  // A location with a root and one without can only meet if the first is
+  // reachable.
   if (!isReachable(Object.Root ? Object : L))
     return std::nullopt;
   for (size_t K = 1; K <= Path.size() && !Object.Path.empty(); ++K) {

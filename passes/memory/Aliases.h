@@ -1,11 +1,12 @@
 //===- Aliases.h - Which locations can be the same memory -----------------===//
 //
-// Two locations can be the same where their paths say so: one without a root is
-// the end of a longer path. Besides, a local variable whose address stays with
-// its own function is nothing that a pointer of another function leads to.
+// The paths of two locations decide whether they can be the same: a location
+// without a root is the end of a longer path. In addition, a local variable
+// whose address does not escape cannot be reached by a pointer of another
+// function.
 //
-// All that asks whether two locations meet asks here, and what is filed by
-// location in LocationIndex.h is found by the same rules.
+// Every question whether two locations can meet is answered here; the index in
+// LocationIndex.h uses the same rules.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_ALIASES_H
@@ -24,11 +25,11 @@ class Aliases {
 public:
   Aliases(llvm::Module &M, const CallGraphResult &Calls, LocationTypes &Types);
 
-  /// True where a pointer without a known root can lead to \p L.
+  /// True if a pointer without a known root can lead to \p L.
   bool isReachable(const Location &L) const;
-  /// Location::mayBe, with what is known of local variables.
+  /// Location::mayBe, and what is known about local variables.
   bool mayBe(const Location &A, const Location &B) const;
-  /// The way from \p Object to \p L, where \p L can be \p Object or in it.
+  /// The path from \p Object to \p L, if \p L can be \p Object or a part of it.
   std::optional<llvm::SmallVector<Step, 4>> partOf(const Location &Object,
                                                    const Location &L) const;
 

@@ -12,22 +12,22 @@ using namespace llvm;
 
 namespace tpc {
 
-/// Bounds the walk through a class of classes. An object with more in it can
-/// call anything.
+/// Limits the walk through nested classes. An object with more classes in it
+/// can call anything.
 static cl::opt<unsigned> MaxParts(
     "tpc-max-object-parts", cl::Hidden, cl::init(256),
     cl::desc(
         "Classes in an object that are searched for functions to call back"));
 
-/// True for the functions that only free or copy what they are handed, or are a
-/// part of the language.
+/// True for functions that only free or copy their arguments, or belong to the
+/// language itself.
 static bool callsNothing(StringRef Name) {
   return givesMemoryBack(Name) || Name.starts_with("_Znw") ||
          Name.starts_with("_Zna") || Name.starts_with("__") || Name == "memcmp";
 }
 
-/// True where \p Class, of which no more than the name is known, may keep
-/// functions. Those of the standard library's classes that do say so.
+/// True if \p Class, of which only the name is known, may store functions. The
+/// standard library's classes that do have it in their names.
 static bool mayKeep(const DICompositeType &Class) {
   StringRef Name = Class.getIdentifier();
   bool IsStandard = Name.consume_front("_ZTS") &&
@@ -42,7 +42,7 @@ const ClassHierarchy &CalledBack::classes() {
   return *Classes;
 }
 
-/// Adds the virtual functions of \p Class and of what derives from it.
+/// Adds the virtual functions of \p Class and of all derived classes.
 void CalledBack::addClass(const DICompositeType &Class, Callable &Out) {
   StringRef Name = Class.getIdentifier();
   if (!Name.consume_front("_ZTS")) {
@@ -57,7 +57,7 @@ const CalledBack::Callable &CalledBack::ofType(const DIType *T) {
   if (Out)
     return *Out;
   Out = std::make_unique<Callable>();
-  // Types, and whether they are but the base class of one that was there.
+  // Types, and whether each is only the base class of an earlier one.
   SmallSetVector<PointerIntPair<const DIType *, 1, bool>, 16> Work;
   auto Add = [&](const DIType *Inner, bool AsBase = false) {
     if (const DIType *Plain = DebugTypes::plain(Inner))
@@ -101,14 +101,14 @@ const CalledBack::Callable &CalledBack::ofType(const DIType *T) {
   return *Out;
 }
 
-/// What can be called of the objects that \p F takes.
+/// What can be called through the objects that \p F takes.
 const CalledBack::Callable &CalledBack::ofParameters(const Function &F) {
   std::unique_ptr<Callable> &Out = ByFunction[&F];
   if (Out)
     return *Out;
   Out = std::make_unique<Callable>();
   StringRef Name = F.getName();
-  // One in C is handed functions by their addresses.
+  // A C function gets functions by their addresses.
   if (!Name.starts_with("_Z"))
     return *Out;
   Out->Kept = Name.contains("function") || Name.contains("PF");

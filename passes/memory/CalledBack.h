@@ -1,12 +1,12 @@
 //===- CalledBack.h - What a library may call back ------------------------===//
 //
 // A function without a body can call the virtual functions of an object that it
-// is handed, and functions that the object keeps the addresses of, as
-// std::function does. What an object is and has in it, its debug information
-// says; of a template's instance its arguments do, too, so that a shared_ptr
-// hands on what it leads to. Other pointers in it are not followed. Of an
-// object about which nothing is known, the mangled name says of which classes
-// it can be.
+// gets, and the functions whose addresses the object stores, as std::function
+// does. The debug information says what an object is and contains. For an
+// instance of a template its arguments count too, so that a shared_ptr passes
+// on the object that it owns. Other pointers inside an object are not followed.
+// If nothing is known about an object, the mangled name of the function lists
+// the classes that it can have.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_CALLEDBACK_H
@@ -27,15 +27,15 @@ class CalledBack {
 public:
   CalledBack(llvm::Module &M, DebugTypes &Debug) : M(M), Debug(Debug) {}
 
-  /// What can be called by one who has an object.
+  /// What code that has an object can call.
   struct Callable {
     llvm::SmallSetVector<const llvm::Function *, 4> Virtual;
-    bool Kept = false;    ///< any function whose address was handed on
-    bool Unknown = false; ///< virtual functions of a class that has no name
+    bool Kept = false;    ///< any function whose address was passed on
+    bool Unknown = false; ///< virtual functions of a class without a name
   };
 
-  /// The objects that \p Call, of a function without a body, hands over: what
-  /// can be called of each.
+  /// For each object that \p Call passes to a function without a body: what can
+  /// be called through it.
   llvm::SmallVector<const Callable *, 2> handedBy(const llvm::CallBase &Call);
 
 private:
@@ -46,7 +46,7 @@ private:
 
   llvm::Module &M;
   DebugTypes &Debug;
-  std::optional<ClassHierarchy> Classes; ///< once it is needed
+  std::optional<ClassHierarchy> Classes; ///< created when first needed
   llvm::DenseMap<const llvm::DIType *, std::unique_ptr<Callable>> ByType;
   llvm::DenseMap<const llvm::Function *, std::unique_ptr<Callable>> ByFunction;
 };

@@ -40,7 +40,7 @@ void LocalWrites::findKept(Module &M, const RuleMatches &Rules) {
   }
 }
 
-/// True where \p Pointer is one place, not any element of an array.
+/// True if \p Pointer is a single place, not any element of an array.
 static bool isOnePlace(const Value *Pointer) {
   while (const auto *GEP = dyn_cast<GEPOperator>(Pointer)) {
     if (!GEP->hasAllConstantIndices())
@@ -51,8 +51,8 @@ static bool isOnePlace(const Value *Pointer) {
          !cast<AllocaInst>(Pointer)->isArrayAllocation();
 }
 
-/// True where \p U, a use of a pointer or of its number, gives nobody the
-/// pointer: it is gone through, compared, or subtracted from another.
+/// True if \p U, a use of a pointer or of its number, does not pass the pointer
+/// on: it is dereferenced, compared or subtracted from another.
 static bool keepsNothing(const Use &U) {
   const auto *I = cast<Instruction>(U.getUser());
   if (isa<LoadInst>(I) || isa<CmpInst>(I))
@@ -64,8 +64,8 @@ static bool keepsNothing(const Use &U) {
                 [](const Value *V) { return isa<PtrToIntInst>(V); });
 }
 
-/// The calls that are handed a pointer into \p Local; none where its address
-/// goes elsewhere as well, after which any call may be.
+/// The calls that get a pointer into \p Local; none if its address is also used
+/// elsewhere, so that any call may change it.
 std::optional<SmallVector<Instruction *, 4>>
 LocalWrites::handedTo(const AllocaInst &Local) {
   if (KeptElsewhere.contains(&Local))
@@ -81,7 +81,7 @@ LocalWrites::handedTo(const AllocaInst &Local) {
         Names.insert(I);
       } else if (isa<CallBase>(I)) {
         Calls.push_back(I);
-        // The result may be what was handed over.
+        // The result may be the pointer that was passed.
         if (I->getType()->isPointerTy() &&
             any_of(Pointers.resolve(I, /*Scalar=*/false),
                    [&](const Location &L) {
@@ -95,8 +95,8 @@ LocalWrites::handedTo(const AllocaInst &Local) {
   return Calls;
 }
 
-/// True where \p Write, in the function of \p Local, writes to it and to no
-/// other run's variable of that name.
+/// True if \p Write, in the function of \p Local, writes to this very variable
+/// and not to that of another activation.
 static bool isByName(const Instruction &Write, const AllocaInst &Local) {
   if (const Value *Pointer = getLoadStorePointerOperand(&Write))
     return getUnderlyingObject(Pointer) == &Local;
@@ -135,8 +135,8 @@ const LocalWrites::History &LocalWrites::historyOf(const Location &L,
   return *Known.back().second;
 }
 
-/// True where \p Store, which writes to \p L, writes all of it: of an array the
-/// element that is meant.
+/// True if \p Store, which writes to \p L, writes all of it; for an array, the
+/// known element.
 bool LocalWrites::isOneScalar(const Location &L, const StoreInst &Store) {
   if (!L.isOne() || isa_and_nonnull<ArrayType>(Types.typeAt(L)))
     return false;
@@ -150,8 +150,8 @@ bool LocalWrites::isOneScalar(const Location &L, const StoreInst &Store) {
          !isa_and_nonnull<StructType>(Types.typeAt(L));
 }
 
-/// True where \p Write, which writes \p L, a local variable, leaves nothing of
-/// what was there.
+/// True if \p Write leaves nothing of the earlier value of the local variable
+/// \p L.
 bool LocalWrites::replaces(const Instruction &Write, const Location &L) {
   if (const auto *Store = dyn_cast<StoreInst>(&Write))
     return isOnePlace(Store->getPointerOperand()) && isOneScalar(L, *Store);
@@ -163,8 +163,9 @@ bool LocalWrites::replaces(const Instruction &Write, const Location &L) {
                            ArrayRef(L.Path).take_front(Whole->Path.size()));
 }
 
-/// Each load walks back through its function: quadratic in generated ones.
-/// Beyond it all writes of a local variable reach all its loads.
+/// Each load walks back through its function, which is quadratic in generated
+/// functions. Beyond the limit, all writes of a local variable reach all its
+/// loads.
 static cl::opt<unsigned> MaxWalked(
     "tpc-max-local-blocks", cl::Hidden, cl::init(20'000'000),
     cl::desc("Basic blocks that are walked for the loads of local variables"));
@@ -180,11 +181,11 @@ void LocalWrites::keepReaching(const Instruction &At, const Location &L,
   bool CallReached = false;
   SmallPtrSet<const BasicBlock *, 16> Seen, SeenThrown;
   SmallVector<std::pair<const BasicBlock *, const Instruction *>, 16> Work;
-  // Walks up through the events of a block that come before \p Below; goes on
-  // above it where no write has replaced the value.
+  // Walks up through the events of a block before \p Below; continues above the
+  // block if no write replaced the value.
   auto Through = [&](const BasicBlock *BB, const Instruction *Below) {
     ++Walked;
-    if (auto It = Past.Events.find(BB); It != Past.Events.end())
+    if (const auto *It = Past.Events.find(BB); It != Past.Events.end())
       for (const Instruction *I : reverse(It->second)) {
         if (Below && !I->comesBefore(Below))
           continue;

@@ -1,11 +1,11 @@
 //===- LocalWrites.h - Which writes of a local variable a read sees -------===//
 //
 // Reaching definitions (Aho, Sethi and Ullman, "Compilers", 10.5) of one local
-// variable at one place, by walking the flow graph of its function back from
-// there to the writes that surely replace the value. A write in another
-// function happens at a call that is handed the variable; where its address was
-// stored away, all of them stay, and only those that name the variable are
-// followed.
+// variable at one instruction: walks the control flow back from the instruction
+// to the writes that always replace the value. A write in another function
+// happens at a call that gets a pointer to the variable. If the address was
+// stored, all of those writes stay, and only the writes that name the variable
+// are followed.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_LOCALWRITES_H
@@ -29,19 +29,19 @@ public:
               const LocationTypes &Types, PointsTo &Pointers,
               const AccessIndex &Accesses);
 
-  /// Leaves in \p W, the writes of the local variable \p L of \p At's function,
-  /// those that reach \p At.
+  /// Keeps in \p W, the writes of the local variable \p L of \p At's function,
+  /// only those that reach \p At.
   void keepReaching(const llvm::Instruction &At, const Location &L,
                     AccessIndex::Writes &W);
 
-  /// How often it was not looked, for the unit is too large.
+  /// How often the search was skipped because the link unit is too large.
   unsigned givenUp() const { return GivenUp; }
 
 private:
-  /// What happens to a local variable in its function: the writes of it, and
-  /// the calls that are handed it, by block and in order.
+  /// What happens to a local variable in its function, by block and in order:
+  /// the writes of it, and the calls that get a pointer to it.
   struct History {
-    bool Known = false; ///< else others may do anything to it anywhere
+    bool Known = false; ///< if false, other code may change it at any time
     llvm::SmallPtrSet<const llvm::Instruction *, 8> Writes;
     llvm::MapVector<const llvm::BasicBlock *,
                     llvm::SmallVector<const llvm::Instruction *, 2>>

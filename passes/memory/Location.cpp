@@ -25,8 +25,8 @@ bool Location::mayBe(const Location &O) const {
   return endsWith(Path, O.Path) || endsWith(O.Path, Path);
 }
 
-/// Each element is a location that is followed by itself. A pointer to more of
-/// one array is taken to lead to any of them.
+/// Each element is a location of its own. A pointer to more elements of one
+/// array counts as pointing to any of them.
 static cl::opt<unsigned>
     MaxItems("tpc-max-items", cl::Hidden, cl::init(8),
              cl::desc("Elements of one array that a pointer leads to"));

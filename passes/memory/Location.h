@@ -1,4 +1,4 @@
-//===- Location.h - A variable, by the way to it --------------------------===//
+//===- Location.h - A variable, as a path from its root -------------------===//
 #ifndef TPC_LOCATION_H
 #define TPC_LOCATION_H
 
@@ -12,13 +12,13 @@
 
 namespace tpc {
 
-/// Which element of an array is meant, if any. Elements of elements count
-/// through: the first of the second row of three is number 3.
+/// Which element of an array is meant, if any. The elements of nested arrays
+/// are counted through: the first of the second row of three is number 3.
 struct Nth {
-  /// The whole array, as a pointer its beginning, or no array at all; and an
-  /// element of which is not known which.
+  /// Whole is the whole array, a pointer to its beginning, or no array at all.
+  /// Any is an element with an unknown number.
   static constexpr unsigned Whole = ~0U, Any = ~0U - 1;
-  /// Elements behind these are not told apart from any.
+  /// Elements with higher numbers count as Any.
   static constexpr unsigned Most = 64;
 
   unsigned Number = Whole;
@@ -27,7 +27,7 @@ struct Nth {
   bool mayBe(Nth O) const {
     return Number == O.Number || !isNumber() || !O.isNumber();
   }
-  /// So many elements on.
+  /// The element \p By elements further on.
   Nth plus(int64_t By) const {
     int64_t To = (isNumber() ? Number : 0) + By;
     bool Known = Number != Any && To >= 0 && To < Most;
@@ -35,12 +35,12 @@ struct Nth {
   }
 };
 
-/// One step into a class: the number of its layout (see TypeNumbers), the
-/// field's index, which class of the source it is (see DebugTypes), 0 where
-/// that is not known, and of a field that is an array which element.
+/// One step into a class: the number of its layout (see TypeNumbers), the index
+/// of the field, the class of the source (see DebugTypes; 0 if it is not known)
+/// and, if the field is an array, the element.
 struct Step {
-  /// Not classes: the step from a container to its elements, and one of so
-  /// many bytes (the index) into an allocation whose type is not known.
+  /// Not classes: the step from a container to its elements, and a step by a
+  /// number of bytes (the index) into an allocation of unknown type.
   static constexpr unsigned Element = ~0U, Bytes = ~0U - 1;
 
   unsigned Type;
@@ -51,35 +51,36 @@ struct Step {
     return Type == O.Type && Index == O.Index && Class == O.Class &&
            Item == O.Item;
   }
-  /// True where the two can be the same step: of one the class may be unknown,
-  /// or the element.
+  /// True if the two can be the same step: the class or the element of one may
+  /// be unknown.
   bool mayEqual(const Step &O) const {
     return Type == O.Type && Index == O.Index &&
            (Class == O.Class || !Class || !O.Class) && Item.mayBe(O.Item);
   }
-  /// mayEqual(), and of an array as much is meant.
+  /// mayEqual(), and the same elements of an array.
   bool isSame(const Step &O) const { return mayEqual(O) && Item == O.Item; }
   bool isField() const { return Type < Bytes; }
 };
 
-/// A variable. With a Root (a global, a local, an allocation) the path is from
-/// its beginning; without one it is a field of whatever object a pointer
-/// leads to, and the path may be the end of a longer one.
+/// A variable. If it has a Root (a global, a local, an allocation), the path
+/// starts at the root. Otherwise it is a field of whatever object a pointer
+/// leads to, and its path may be the end of a longer one.
 struct Location {
   const llvm::Value *Root = nullptr;
   llvm::SmallVector<Step, 4> Path;
-  Nth RootItem = {}; ///< of a root that is an array
+  Nth RootItem = {}; ///< if the root is an array
 
-  /// Of what is at the end of the path.
+  /// The element at the end of the path.
   Nth &item() { return Path.empty() ? RootItem : Path.back().Item; }
   Nth item() const { return Path.empty() ? RootItem : Path.back().Item; }
-  /// True where it is one variable, not any of an array.
+  /// True if it is a single variable, not any element of an array.
   bool isOne() const {
     return RootItem.Number != Nth::Any &&
            llvm::none_of(
                Path, [](const Step &S) { return S.Item.Number == Nth::Any; });
   }
-  /// Means any element where it meant one: at its end, or on all of the way.
+  /// Replaces the element at its end, or all elements on the path, by any
+  /// element.
   void widen() {
     if (item().isNumber())
       item() = {Nth::Any};
@@ -101,7 +102,7 @@ struct Location {
   bool operator==(const Location &O) const {
     return Root == O.Root && RootItem == O.RootItem && Path == O.Path;
   }
-  /// True where the two can be the same path from the same root.
+  /// True if the two can be the same path from the same root.
   bool mayEqual(const Location &O) const {
     return Root == O.Root && RootItem.mayBe(O.RootItem) &&
            mayEqual(Path, O.Path);
@@ -110,7 +111,7 @@ struct Location {
     return llvm::equal(
         A, B, [](const Step &S, const Step &T) { return S.mayEqual(T); });
   }
-  /// mayEqual(), and of arrays as much is meant.
+  /// mayEqual(), and the same elements of arrays.
   bool isSame(const Location &O) const {
     return Root == O.Root && RootItem == O.RootItem && areSame(Path, O.Path);
   }
@@ -118,37 +119,38 @@ struct Location {
     return llvm::equal(
         A, B, [](const Step &S, const Step &T) { return S.isSame(T); });
   }
-  /// True where the two can be the same variable: without a root, a path can be
-  /// the end of a longer one.
+  /// True if the two can be the same variable: a path without a root can be the
+  /// end of a longer one.
   bool mayBe(const Location &O) const;
 };
 
-/// True where \p Tail can be the end of \p Path.
+/// True if \p Tail can be the end of \p Path.
 bool endsWith(llvm::ArrayRef<Step> Path, llvm::ArrayRef<Step> Tail);
 
 using Locations = llvm::SmallVector<Location, 1>;
 
-/// More places than this for one pointer say nothing any more.
+/// A pointer to more places than this says nothing any more.
 inline constexpr unsigned MaxLocations = 64;
 
-/// Adds \p L to \p Out, to which it does not belong where it is not known, or
-/// there are too many; of too many elements of one array it becomes any.
+/// Adds \p L to \p Out. Does not add a location that is unknown or exceeds the
+/// limit; too many elements of one array become any element.
 void addTo(Locations &Out, Location L);
 
-/// Nothing iterates over a table by this hash: its order depends on addresses.
+/// Nothing iterates over a table with this hash, since its order depends on
+/// addresses.
 struct LocationHash {
   size_t operator()(const Location &L) const;
 };
-/// What is known of exactly these locations; a reference into it stays valid.
+/// Maps exact locations; references to the values stay valid.
 template <typename T>
 using LocationMap = std::unordered_map<Location, T, LocationHash>;
 using LocationSet = std::unordered_set<Location, LocationHash>;
 
-/// A scalar that a load or store touches, and the bits of the register that are
-/// it: an object of several scalars can be handed around as one number.
+/// A scalar that a load or store touches, and its bits in the register: several
+/// scalars of an object can be passed as one number.
 struct ScalarPart {
   Location Where;
-  unsigned Low = 0, Size = 0; ///< bits; no size where there is but one scalar
+  unsigned Low = 0, Size = 0; ///< bits; Size is 0 if there is only one scalar
 };
 
 } // namespace tpc

@@ -8,10 +8,8 @@ namespace tpc {
 LocationIndex::Slot LocationIndex::slotOf(const Value *Root,
                                           ArrayRef<Step> Path) {
   if (Path.empty())
-    return {Root, ~0U};
-  return {reinterpret_cast<const void *>(
-              static_cast<uintptr_t>(Path.back().Type) * 16 + 8),
-          Path.back().Index};
+    return {reinterpret_cast<uintptr_t>(Root), ~0U};
+  return {static_cast<uintptr_t>(Path.back().Type) * 16 + 8, Path.back().Index};
 }
 
 void LocationIndex::add(unsigned N, const Location &L, size_t Steps) {

@@ -1,10 +1,10 @@
-//===- LocationIndex.h - What is filed by location ------------------------===//
+//===- LocationIndex.h - Finds things by location -------------------------===//
 //
-// Three ways to ask for what can be the same memory (see Aliases.h) without
-// going through all of it: at a location, around it, and in it. Each finds a
-// few numbers too many, since it looks at the ends of paths alone; the caller
-// asks Aliases about each. What is filed is found in the order of its numbers,
-// key by key.
+// Three ways to find the locations that can be the same memory (see Aliases.h)
+// without comparing all of them: at a location, around it and in it. Each
+// returns some numbers too many, because it compares only the ends of paths;
+// the caller checks each with Aliases. The numbers come in ascending order for
+// each key.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_LOCATIONINDEX_H
@@ -16,47 +16,50 @@
 
 namespace tpc {
 
+/// Calls \p F with the numbers that \p In has for \p Key.
+template <typename Map, typename Fn>
+void eachOf(const Map &In, const typename Map::key_type &Key, Fn F) {
+  if (auto It = In.find(Key); It != In.end())
+    llvm::for_each(It->second, F);
+}
+
 /// Numbers by location.
 class LocationIndex {
 public:
   explicit LocationIndex(const Aliases &Alias) : Alias(Alias) {}
 
-  /// The last step to a location, or its root where there is none.
-  using Slot = std::pair<const void *, unsigned>;
+  /// The last step of a location, or its root if there is no step. The number
+  /// of a class is shifted so that it is never the address of a root.
+  using Slot = std::pair<uintptr_t, unsigned>;
   static Slot slotOf(const Location &L) { return slotOf(L.Root, L.Path); }
 
   void add(unsigned N, const Location &L) { add(N, L, L.Path.size()); }
   /// The same for the object that the first \p Steps of \p L lead to.
   void add(unsigned N, const Location &L, size_t Steps);
 
-  /// Calls \p F with the numbers of what has the last step and the root of
-  /// \p L, be that none.
+  /// Calls \p F with the numbers of locations with the same last step and root
+  /// as \p L; the root may be null.
   template <typename Fn> void eachWithRootOf(const Location &L, Fn F) const {
-    visit(Exact, std::pair(slotOf(L), L.Root), F);
+    eachOf(Exact, std::pair(slotOf(L), L.Root), F);
   }
-  /// Calls \p F with the numbers of what can be \p L.
+  /// Calls \p F with the numbers of locations that can be \p L.
   template <typename Fn> void eachAt(const Location &L, Fn F) const {
     eachAt(L, L.Path.size(), F);
   }
-  /// Calls \p F with the numbers of what can be \p L or an object that its path
-  /// leads through.
+  /// Calls \p F with the numbers of locations that can be \p L or an object on
+  /// its path.
   template <typename Fn> void eachAround(const Location &L, Fn F) const;
 
 private:
   static Slot slotOf(const llvm::Value *Root, llvm::ArrayRef<Step> Path);
   template <typename Fn>
   void eachAt(const Location &L, size_t Steps, Fn F) const;
-  template <typename Map, typename Fn>
-  static void visit(const Map &In, const typename Map::key_type &Key, Fn F) {
-    if (auto It = In.find(Key); It != In.end())
-      llvm::for_each(It->second, F);
-  }
 
   const Aliases &Alias;
   llvm::DenseMap<std::pair<Slot, const llvm::Value *>,
                  llvm::SmallVector<unsigned, 2>>
-      Exact; ///< of a slot and a root, which may be null
-  /// Those with a root that pointers without a known one can lead to.
+      Exact; ///< by slot and root, which may be null
+  /// Locations with a root that pointers without a known root can reach.
   llvm::DenseMap<Slot, llvm::SmallVector<unsigned, 2>> Rooted;
 };
 
@@ -71,26 +74,25 @@ public:
   template <typename Fn> void eachAround(const Location &L, Fn F) const {
     ByLocation.eachAround(L, F);
     if (!L.Root && !L.Path.empty())
-      if (auto It = ByClass.find(L.Path[0].Type); It != ByClass.end())
-        llvm::for_each(It->second, F);
+      eachOf(ByClass, L.Path[0].Type, F);
   }
 
 private:
   const Aliases &Alias;
   LocationTypes &Types;
   LocationIndex ByLocation;
-  /// By the classes that are in them.
+  /// By the classes inside the object.
   llvm::DenseMap<unsigned, llvm::SmallVector<unsigned, 4>> ByClass;
 };
 
-/// Numbers of variables by all objects that they are inside of.
+/// Numbers of variables by all objects that contain them.
 class PartIndex {
 public:
   PartIndex(const Aliases &Alias, LocationTypes &Types)
       : Alias(Alias), Types(Types), ByObject(Alias) {}
 
   void add(unsigned N, const Location &L);
-  /// Calls \p F with the numbers of what can be \p Object, or in it.
+  /// Calls \p F with the numbers of locations that can be \p Object, or in it.
   template <typename Fn> void eachIn(const Location &Object, Fn F) const {
     ByObject.eachAt(Object, F);
     if (!Alias.isReachable(Object))
@@ -98,26 +100,26 @@ public:
     llvm::SmallSetVector<unsigned, 8> Classes;
     Types.addClassesIn(Types.typeAt(Object), Classes);
     for (unsigned Class : Classes)
-      if (auto It = ByClass.find(Class); It != ByClass.end())
-        llvm::for_each(It->second, F);
+      eachOf(ByClass, Class, F);
   }
 
 private:
   const Aliases &Alias;
   LocationTypes &Types;
   LocationIndex ByObject;
-  /// Without a root, by the class where the path begins.
+  /// Without a root: by the class at the beginning of the path.
   llvm::DenseMap<unsigned, llvm::SmallVector<unsigned, 4>> ByClass;
 };
 
 template <typename Fn>
 void LocationIndex::eachAt(const Location &L, size_t Steps, Fn F) const {
   Slot Here = slotOf(L.Root, llvm::ArrayRef(L.Path).take_front(Steps));
-  visit(Exact, std::pair(Here, L.Root), F);
+  eachOf(Exact, std::pair(Here, L.Root), F);
   if (!L.Root)
-    visit(Rooted, Here, F);
+    eachOf(Rooted, Here, F);
   else if (Steps && Alias.isReachable(L))
-    visit(Exact, std::pair(Here, static_cast<const llvm::Value *>(nullptr)), F);
+    eachOf(Exact, std::pair(Here, static_cast<const llvm::Value *>(nullptr)),
+           F);
 }
 
 template <typename Fn>

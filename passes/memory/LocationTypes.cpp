@@ -27,7 +27,8 @@ Type *elementOf(Type *T) {
 }
 
 void LocationTypes::findClassesOfGlobals(const Module &M) {
-  // All types of a module are not at hand; few modules need them.
+  // The types of a module are collected only when needed; few modules need
+  // them.
   std::optional<std::vector<StructType *>> All;
   for (const GlobalVariable &Global : M.globals()) {
     const auto *T = dyn_cast<StructType>(Global.getValueType());
@@ -64,7 +65,7 @@ Type *LocationTypes::typeAt(const Location &L) const {
   return L.item().Number == Nth::Whole ? T : elementOf(T);
 }
 
-/// The source's type of what is at \p L; null where it is not known.
+/// The source's type of the object at \p L; null if it is not known.
 const DIType *LocationTypes::debugTypeAt(const Location &L) const {
   if (L.Path.empty())
     return L.Root ? Debug.pointee(L.Root) : nullptr;
@@ -114,8 +115,8 @@ void LocationTypes::extend(Location &L, ArrayRef<Step> Steps) const {
   L.Path.append(Steps.begin(), Steps.end());
 }
 
-/// Where \p L is in an array, moves it on by \p Index objects of type \p Unit,
-/// each an element or some.
+/// If \p L is in an array, moves it by \p Index objects of type \p Unit, each
+/// of which is one element or several.
 void LocationTypes::moveOn(Location &L, const Value *Index, Type *Unit) const {
   Type *Array = declaredTypeAt(L);
   if (!isa_and_nonnull<ArrayType>(Array) || !Unit->isSized())
@@ -172,7 +173,8 @@ bool LocationTypes::descend(Location &L, int64_t &Offset, Type *Until) {
     if (!T || !T->isSized())
       return false;
     bool InArray = Whole->isArrayTy();
-    if (int64_t Bytes = Layout.getTypeAllocSize(T).getFixedValue();
+    if (auto Bytes =
+            static_cast<int64_t>(Layout.getTypeAllocSize(T).getFixedValue());
         InArray && Bytes) {
       int64_t By =
           Offset >= 0 ? Offset / Bytes : -((Bytes - 1 - Offset) / Bytes);
@@ -195,12 +197,14 @@ bool LocationTypes::descend(Location &L, int64_t &Offset, Type *Until) {
       return false;
     unsigned Field = Fields->getElementContainingOffset(Offset);
     enterField(L, Class, Field);
-    Offset -= Fields->getElementOffset(Field);
+    Offset -=
+        static_cast<int64_t>(Fields->getElementOffset(Field).getFixedValue());
   }
 }
 
 /// Adds the scalars of an object of type \p T at \p L, which begins \p At bytes
-/// behind the beginning of an access, as far as the \p Size bytes of that go.
+/// after the beginning of an access of \p Size bytes, as far as the access
+/// covers them.
 void LocationTypes::addScalarsOf(const Location &L, Type *T, int64_t At,
                                  uint64_t Size,
                                  SmallVectorImpl<ScalarPart> &Out) {
@@ -209,8 +213,9 @@ void LocationTypes::addScalarsOf(const Location &L, Type *T, int64_t At,
     return;
   if (T->isArrayTy()) {
     Type *Element = elementOf(T);
-    int64_t Bytes = Layout.getTypeAllocSize(Element).getFixedValue();
-    int64_t End = Layout.getTypeAllocSize(T).getFixedValue();
+    auto Bytes =
+        static_cast<int64_t>(Layout.getTypeAllocSize(Element).getFixedValue());
+    auto End = static_cast<int64_t>(Layout.getTypeAllocSize(T).getFixedValue());
     int64_t Begin = Bytes && At < 0 ? -At / Bytes * Bytes : 0;
     for (int64_t Here = Begin;
          Bytes && Here < End && At + Here < static_cast<int64_t>(Size) &&
@@ -248,7 +253,7 @@ bool LocationTypes::addScalars(Location L, uint64_t Size,
   size_t First = Out.size();
   uint64_t At = 0;
   while (true) {
-    // Of an array the elements that follow, as far as it goes.
+    // In an array, the following elements are covered too.
     if (Type *Whole = declaredTypeAt(L); Whole && Whole->isArrayTy()) {
       uint64_t Bytes =
           Layout.getTypeAllocSize(elementOf(Whole)).getFixedValue();
@@ -281,7 +286,7 @@ bool LocationTypes::addScalars(Location L, uint64_t Size,
     }
     break;
   }
-  // Where it begins is not known: any elements.
+  // Where the access begins is not known: any elements.
   if (!IsOne)
     for (ScalarPart &Part : drop_begin(Out, First))
       Part.Where.widenAll();

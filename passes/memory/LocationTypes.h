@@ -1,8 +1,8 @@
-//===- LocationTypes.h - What a location is of ----------------------------===//
+//===- LocationTypes.h - The types of locations ---------------------------===//
 //
-// The type that LLVM gives what stands at a location, the class that the source
-// gives it, and the ways from one location to others: into a class, along an
-// array, so many bytes on. Nothing here knows of pointers.
+// LLVM's type of the object at a location, its class in the source, and how to
+// get from one location to another: into a class, along an array, by a number
+// of bytes. Nothing here knows about pointers.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_LOCATIONTYPES_H
@@ -17,71 +17,72 @@
 
 namespace tpc {
 
-/// Classes in classes that are entered. Real ones end long before; classes that
-/// are taken for the same because they look alike may contain each other.
+/// The nesting of classes that is followed. Real classes are never nested as
+/// deeply; classes that count as the same because they look alike may contain
+/// each other.
 inline constexpr unsigned MaxPath = 32;
 
-/// The element of an array, of whatever dimension; else \p T.
+/// The element type of an array of any dimension; otherwise \p T.
 llvm::Type *elementOf(llvm::Type *T);
 
-/// Classes are numbered, and their debug information is looked for, when they
-/// are first met: most of the members are not const for that.
+/// Classes are numbered, and their debug information is searched, when they are
+/// first met; most members are therefore not const.
 class LocationTypes {
 public:
   LocationTypes(const llvm::Module &M, DebugTypes &Debug);
 
-  /// The type that the variable at \p L was declared with, also where \p L is
-  /// one element of it; null where it is not known.
+  /// The declared type of the variable at \p L, also if \p L is one of its
+  /// elements; null if it is not known.
   llvm::Type *declaredTypeAt(const Location &L) const;
-  /// The type of what is at \p L.
+  /// The type of the object at \p L.
   llvm::Type *typeAt(const Location &L) const;
 
   /// The class that \p S, a step to a field, leads into.
   llvm::StructType *classOf(const Step &S) const {
     return Numbers.typeOf(S.Type);
   }
-  /// The same as the source has it; null where that is not known.
+  /// The same class in the source; null if it is not known.
   const llvm::DICompositeType *sourceClassOf(const Step &S) const {
     return Debug.classOf(S.Class);
   }
-  /// The name of the field that \p S leads to; empty where it has none.
+  /// The name of the field that \p S leads to; empty if it has none.
   llvm::StringRef fieldName(const Step &S) const;
-  /// True where that field is const.
+  /// True if that field is const.
   bool isConst(const Step &S) const;
-  /// The type that the source gives it; null where that is not known.
+  /// The type of that field in the source; null if it is not known.
   const llvm::DIType *sourceTypeOf(const Step &S) const;
 
-  /// True for one type, and for one class that was read from two files.
+  /// True for the same type, and for one class that was read from two files.
   bool isAlike(llvm::Type *A, llvm::Type *B);
-  /// Adds the numbers of the classes that are in an object of type \p T.
+  /// Adds the numbers of the classes in an object of type \p T.
   void addClassesIn(llvm::Type *T, llvm::SmallSetVector<unsigned, 8> &Out);
-  /// True where the class \p Inner is \p Outer, or in it.
+  /// True if the class \p Inner is \p Outer, or in it.
   bool contains(llvm::Type *Outer, unsigned Inner);
 
-  /// Of an array the element at its beginning.
+  /// Moves \p L from an array to its first element.
   void enterElement(Location &L) const;
-  /// The scalar at the beginning.
+  /// Moves \p L to the scalar at its beginning.
   void enterScalar(Location &L);
-  /// Goes the way of \p GEP from \p L.
+  /// Moves \p L as \p GEP does.
   void follow(Location &L, const llvm::GEPOperator &GEP);
-  /// Goes \p Steps further from \p L. How a container keeps its elements, in
-  /// nodes or in pairs with a key, makes no difference: those steps are left
-  /// out.
+  /// Appends \p Steps to \p L. Steps into the nodes or pairs in which a
+  /// container keeps its elements are left out.
   void extend(Location &L, llvm::ArrayRef<Step> Steps) const;
-  /// Goes \p Offset bytes into \p L, and with \p Until no further than to an
-  /// object of that class, or an element of that type in an array; takes the
-  /// way off \p Offset. False where nothing begins there.
+  /// Moves \p L into the part at \p Offset bytes and reduces \p Offset
+  /// accordingly. With \p Until, stops at an object of that class or an array
+  /// element of that type. False if nothing begins there.
   bool descend(Location &L, int64_t &Offset, llvm::Type *Until);
-  /// Makes of a place in an array of scalars any place there; false elsewhere.
+  /// Turns an element of an array of scalars into any element; false for other
+  /// places.
   bool anyElement(Location &L) const;
 
-  /// Adds the scalars that an access of \p Size bytes touches which begins with
-  /// the scalar at \p L: those that follow it are in one of the objects that it
-  /// is in. False where it is no more than that scalar.
+  /// Adds the scalars touched by an access of \p Size bytes that begins with
+  /// the scalar at \p L. Those that follow are in one of the objects that
+  /// contain it. False if only that scalar is touched.
   bool addScalars(Location L, uint64_t Size,
                   llvm::SmallVectorImpl<ScalarPart> &Out);
 
-  /// Prints \p L for the dumps of the analyses: `@Global[struct.Outer.0][any]`.
+  /// Prints \p L as the printers show it: `@Global[struct.Outer.0][any]`.
   void print(llvm::raw_ostream &OS, const Location &L) const;
 
 private:
@@ -96,7 +97,7 @@ private:
   DebugTypes &Debug;
   TypeNumbers Numbers;
   llvm::DenseMap<std::pair<llvm::StructType *, unsigned>, bool> Contained;
-  /// Of globals whose type is another for the sake of their initial value.
+  /// For globals whose type differs only because of their initial value.
   llvm::DenseMap<const llvm::GlobalVariable *, llvm::StructType *>
       ClassOfGlobal;
 };

@@ -21,7 +21,7 @@ const Value *containerOf(const CallBase &Call) {
   return N < Call.arg_size() ? Call.getArgOperand(N) : nullptr;
 }
 
-/// True for the calls that allocate memory.
+/// True for calls that allocate memory.
 static bool isAllocation(const Value *V) {
   const auto *Call = dyn_cast<CallBase>(V);
   const Function *Callee = Call ? Call->getCalledFunction() : nullptr;
@@ -31,8 +31,8 @@ static bool isAllocation(const Value *V) {
   return Callee && is_contained(Names, Callee->getName());
 }
 
-/// Adds the place that \p Chain leads to in the allocation at \p L: its type is
-/// not known, but how far it is.
+/// Adds the place that \p Chain leads to in the allocation at \p L. The type
+/// there is not known, but the offset is.
 void PointsTo::addAllocated(const Location &L,
                             ArrayRef<const GEPOperator *> Chain,
                             Locations &Out) {
@@ -51,7 +51,7 @@ void PointsTo::addAllocated(const Location &L,
   addTo(Out, std::move(Here));
 }
 
-/// True where \p GEP leads into a class, or from one object to the next.
+/// True if \p GEP leads into a class, or from one object to the next.
 static bool entersClass(const GEPOperator &GEP) {
   Type *T = GEP.getSourceElementType();
   if (T->isStructTy())
@@ -64,7 +64,7 @@ static bool entersClass(const GEPOperator &GEP) {
   return false;
 }
 
-/// What is between a pointer and the pointer that it is computed from.
+/// The pointer that \p V is a cast of.
 static const Value *throughCasts(const Value *V) {
   while (true) {
     if (const auto *Cast = dyn_cast<CastInst>(V);
@@ -85,8 +85,8 @@ const Value *PointsTo::baseOf(const Value *Pointer) {
   return Base;
 }
 
-/// Adds the locations that \p Pointer can lead to, as far as it is known by
-/// now what the pointers that it is computed from lead to.
+/// Adds the locations that \p Pointer can lead to, given what is known so far
+/// about the pointers that it is computed from.
 void PointsTo::addPointees(const Value *Pointer, Locations &Out) {
   SmallVector<const GEPOperator *, 4> Chain;
   const Value *Base = throughCasts(Pointer);
@@ -101,23 +101,23 @@ void PointsTo::addPointees(const Value *Pointer, Locations &Out) {
     Objects.push_back({Base, {}});
   else if (auto It = Targets.find(Base); It != Targets.end())
     Objects = It->second;
-  // Besides the objects that are known there are those that are not: of them
-  // the path alone is known, from its first class on.
+  // Besides the known objects there are unknown ones. Of those only the path is
+  // known, from its first class on.
   if (!Rooted && !Complete.contains(Base))
     Objects.insert(Objects.begin(), Location());
-  // A pointer that is an element further each time it is computed.
+  // A pointer that moves on by an element each time it is computed.
   bool Walks = !Rooted && !isa<Argument>(Base);
   for (const Location &L : Objects)
     followChain(L, Chain, Walks, Out);
 }
 
-/// Adds the place that \p Chain, the nearest to \p L last, leads to from there.
-/// Where the pointer to it \p Walks, it can be many elements further.
+/// Adds the place that \p Chain, whose last element is next to \p L, leads to
+/// from \p L. If the pointer \p Walks, it can be many elements further on.
 void PointsTo::followChain(Location L, ArrayRef<const GEPOperator *> Chain,
                            bool Walks, Locations &Out) {
   if (L.Root && isa<CallBase>(L.Root) &&
       (L.Path.empty() || L.Path.back().Type == Step::Bytes)) {
-    // Where the way says which class it is, all objects of it are meant.
+    // If the path names the class, it means all objects of the class.
     if (none_of(Chain, [](const GEPOperator *GEP) {
           const auto *S = dyn_cast<StructType>(GEP->getSourceElementType());
           return S && !S->isLiteral();
@@ -133,8 +133,8 @@ void PointsTo::followChain(Location L, ArrayRef<const GEPOperator *> Chain,
     Type *Source = GEP->getSourceElementType();
     Type *Element = elementOf(Source);
     auto *Struct = dyn_cast<StructType>(Element);
-    // By bytes, or by the shape that the calling convention gives an object
-    // in registers: the way has to be found in the object itself.
+    // By bytes, or in the shape that the calling convention gives an object in
+    // registers: the path must be found in the object itself.
     if ((Struct && Struct->isLiteral()) || Source->isIntegerTy(8)) {
       APInt Offset(Layout.getIndexTypeSizeInBits(GEP->getType()), 0);
       if (GEP->accumulateConstantOffset(Layout, Offset))
@@ -153,15 +153,15 @@ void PointsTo::followChain(Location L, ArrayRef<const GEPOperator *> Chain,
       Types.extend(L, Way.Path);
       continue;
     }
-    // A base class, or what a pointer of another type was made of.
+    // A base class, or an object that a pointer of another type was made from.
     Type *Declared = Types.declaredTypeAt(L);
     if (L.isKnown() && (Bytes != 0 || elementOf(Declared) != Element ||
                         (!Struct && !Declared->isArrayTy()))) {
       Location Inner = L;
       int64_t Rest = Bytes;
       bool Found = Types.descend(Inner, Rest, Element);
-      // A number that is in no array is what it is, however far one goes; what
-      // it is a part of may be another element.
+      // A scalar outside of any array stays itself, however far the pointer
+      // moves; an object that contains it may be another element.
       if (!Found && !entersClass(*GEP)) {
         if (!GEP->hasAllZeroIndices()) {
           Types.anyElement(L);

@@ -1,19 +1,20 @@
 //===- PointsTo.h - The locations that a pointer leads to -----------------===//
 //
-// Pointers are resolved to locations by following them back through
-// getelementptr, phis, arguments to the calls, results to the returns, and
-// loads of pointers to the stores of them: inclusion-based points-to analysis
-// as Andersen's ("Program analysis and specialization for the C programming
-// language", 1994, chapter 4), with fields, without contexts but for results
-// that are one of the call's own arguments.
+// Pointers are resolved to locations by following them back: through
+// getelementptr and phis, from arguments to the calls, from results to the
+// returns, and from loads of pointers to the stores of them. This is the
+// inclusion-based points-to analysis of Andersen ("Program analysis and
+// specialization for the C programming language", 1994, chapter 4), with
+// fields, and without contexts except for results that are one of the call's
+// own arguments.
 //
-// Fields are told apart by class and position, not by object: two objects of
-// one class share their fields. Elements of an array are told apart where their
-// index is constant; those of a container are one location, however it keeps
-// them (see the rules' containers).
+// Fields are distinguished by class and position, not by object: two objects of
+// one class share their fields. Elements of an array are distinguished if their
+// index is constant. The elements of a container are one location, however it
+// stores them (see `containers` in the rules).
 //
-// What the pointers lead to that are not computed on the spot is found once, by
-// PointsToSolver; the others are followed to those when they are asked for.
+// PointsToSolver computes once what arguments, results, phis and pointers in
+// memory lead to. All other pointers are followed back to those on request.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_POINTSTO_H
@@ -36,24 +37,24 @@ public:
   PointsTo(const llvm::DataLayout &Layout, LocationTypes &Types)
       : Layout(Layout), Types(Types) {}
 
-  /// The locations that \p Pointer can point to. With \p Scalar a class is
-  /// entered down to the scalar at its beginning: what a load or store of a
-  /// scalar touches. Empty where nothing is known.
+  /// The locations that \p Pointer can point to. With \p Scalar, a class is
+  /// replaced by the scalar at its beginning: what a load or store of a scalar
+  /// touches. Empty if nothing is known.
   Locations resolve(const llvm::Value *Pointer, bool Scalar);
 
-  /// What can be reached from \p Pointer by one who is handed it: of an array
-  /// all elements, unless \p IsOne says that just an object is meant.
+  /// What code that gets \p Pointer can reach: all elements of an array, unless
+  /// \p IsOne says that a single object is meant.
   Locations handed(const llvm::Value *Pointer, bool IsOne);
 
-  /// What \p Copy takes from or puts to \p Pointer: one element where it is no
-  /// larger than that.
+  /// What \p Copy reads or writes at \p Pointer: one element of an array if it
+  /// copies no more than that.
   Locations copied(const llvm::MemTransferInst &Copy,
                    const llvm::Value *Pointer);
 
-  /// What \p I, a load or store, touches: a scalar, or all scalars of what is
-  /// loaded or stored as one value.
+  /// What \p I, a load or store, touches: a scalar, or all scalars of the
+  /// object that is loaded or stored as one value.
   Locations touched(const llvm::Instruction &I);
-  /// The same with the bits of the register.
+  /// The same, with the bits of the register.
   llvm::SmallVector<ScalarPart, 1> partsOf(const llvm::Instruction &I);
 
   /// Adds the elements of the container that \p Container points to.
@@ -72,10 +73,10 @@ private:
 
   const llvm::DataLayout &Layout;
   LocationTypes &Types;
-  /// What the pointers that are not computed on the spot can lead to:
-  /// arguments, results, merges, and pointers that were in memory.
+  /// What pointers that are not computed on the spot can lead to: arguments,
+  /// results, phis, and pointers in memory.
   llvm::DenseMap<const llvm::Value *, Locations> Targets;
-  /// Those of them that lead to nothing else than their targets.
+  /// Those of them that lead only to their targets.
   llvm::DenseSet<const llvm::Value *> Complete;
 };
 

@@ -5,10 +5,12 @@
 #include "support/Functions.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/ADT/Statistic.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Operator.h"
 #include "llvm/Support/CommandLine.h"
+#include "llvm/Support/Debug.h"
 
 #include <utility>
 
@@ -16,8 +18,11 @@ using namespace llvm;
 
 namespace tpc {
 
-/// Each round follows pointers through memory one step further. Lists that are
-/// linked by allocations would never end.
+#define DEBUG_TYPE "tpc-points-to"
+STATISTIC(NumRounds, "Rounds of the points-to analysis");
+
+/// Each round follows pointers through memory one step further. Linked lists of
+/// allocations would never end.
 static cl::opt<unsigned>
     MaxRounds("tpc-max-points-to-rounds", cl::Hidden, cl::init(32),
               cl::desc("Rounds of the points-to analysis"));
@@ -46,8 +51,9 @@ const PointsToSolver::Returned &PointsToSolver::returnedBy(const Function &F) {
   return It->second;
 }
 
-/// A pointer that a function returned. Where it returns one of its arguments,
-/// that of this very call is meant: std::max(a, b) is a or b.
+/// Adds the sources of a pointer that \p Call returns. If the function returns
+/// one of its arguments, the argument of this call is meant: std::max(a, b) is
+/// a or b.
 void PointsToSolver::addReturned(const CallBase &Call, Node &N) {
   for (const Function *Callee : Calls.callees(Call)) {
     const Returned &Result = returnedBy(*Callee);
@@ -69,7 +75,7 @@ void PointsToSolver::makeNode(Instruction &I) {
   else if (Call)
     addReturned(*Call, N);
   else if (const auto *Extract = dyn_cast<ExtractValueInst>(&I)) {
-    // An iterator and whether something was inserted.
+    // A pair of an iterator and whether something was inserted.
     const auto *Pair = dyn_cast<CallBase>(Extract->getAggregateOperand());
     if (!Pair || !Rules.container(*Pair))
       return;
@@ -106,7 +112,7 @@ void PointsToSolver::makeNodes() {
   }
 }
 
-/// True where what \p N takes its targets from has grown.
+/// True if a source of \p N has gained targets.
 bool PointsToSolver::isDue(const Node &N) const {
   if (!N.Done || (N.Container && hasGrown(N.Container, N.Done)) ||
       any_of(N.Sources, [&](const Value *V) { return hasGrown(V, N.Done); }))
@@ -126,7 +132,7 @@ unsigned PointsToSolver::contentAt(const Location &L, bool Unrooted) {
   return It->second;
 }
 
-/// Adds to \p Out the pointers that are kept at a place by now.
+/// Adds to \p Out the pointers stored at a place so far.
 void PointsToSolver::collect(unsigned Number, Locations &Out) {
   const Location Where = Contents[Number].Where;
   bool Unrooted = Contents[Number].Unrooted;
@@ -150,7 +156,7 @@ void PointsToSolver::collect(unsigned Number, Locations &Out) {
     addTo(Out, L);
 }
 
-/// Adds what \p N's sources lead to by now; true where that is more.
+/// Adds the targets of \p N's sources known so far; true if there are new ones.
 bool PointsToSolver::update(Node &N) {
   Locations Found = R.Targets.lookup(N.V);
   size_t Before = Found.size();
@@ -165,7 +171,7 @@ bool PointsToSolver::update(Node &N) {
   if (const auto *Load = dyn_cast<LoadInst>(N.V)) {
     N.Where = R.resolve(Load->getPointerOperand(), true);
     for (const Location &L : N.Where) {
-      // Elements lead to each other where they are kept in nodes.
+      // Elements that are kept in nodes point to each other.
       if (L.isElement())
         addTo(Found, L);
       if (auto It = Iterators.find(L.Root); L.Root && It != Iterators.end())
@@ -182,8 +188,8 @@ bool PointsToSolver::update(Node &N) {
   return true;
 }
 
-/// Adds the places that \p S stores to by now, and tells those who load from
-/// there; true where there is something to tell.
+/// Adds the places that \p S stores to, as known so far, and notifies the loads
+/// of them; true if there is news.
 bool PointsToSolver::update(PointerStore &S, unsigned Number) {
   bool More = false;
   if (!S.Done || hasGrown(S.I->getPointerOperand(), S.Done))
@@ -203,7 +209,7 @@ bool PointsToSolver::update(PointerStore &S, unsigned Number) {
   return true;
 }
 
-/// One round; true where something new was found.
+/// One round; true if something new was found.
 bool PointsToSolver::propagate() {
   bool Changed = false;
   for (Node &N : Nodes)
@@ -215,8 +221,9 @@ bool PointsToSolver::propagate() {
   return Changed && !Budget::isSpent();
 }
 
-/// True where the objects that \p V leads to are all known, given that those
-/// of the pointers in \p Complete are. A field is: of any object of its class.
+/// True if all objects that \p V leads to are known, provided that those of the
+/// pointers in \p Complete are. A field is known: it belongs to any object of
+/// its class.
 static bool isComplete(const Value *V,
                        const DenseSet<const Value *> &Complete) {
   while (true) {
@@ -235,7 +242,8 @@ static bool isComplete(const Value *V,
   }
 }
 
-/// Finds the locals that are copied to, or handed to what is not looked into.
+/// Finds the locals that are copied to, or passed to functions that are not
+/// analysed.
 void PointsToSolver::findFilled() {
   auto Add = [&](const Value *Pointer) {
     for (const Location &L : R.resolve(Pointer, false))
@@ -257,11 +265,11 @@ void PointsToSolver::findFilled() {
     }
 }
 
-/// True where all pointers that a load finds in memory are complete: it reads
-/// fields and variables that the program stores such pointers to, and others
-/// do not know of.
+/// True if all pointers that a load finds in memory are complete: it reads
+/// fields and variables in which the program stores such pointers and which
+/// other code cannot write.
 bool PointsToSolver::findsComplete(const Node &Load) const {
-  // It may turn out later what it reads.
+  // Later rounds may find what it reads.
   if (Load.Where.empty())
     return isComplete(cast<LoadInst>(Load.V)->getPointerOperand(), R.Complete);
   bool Stored = false;
@@ -285,9 +293,9 @@ bool PointsToSolver::findsComplete(const Node &Load) const {
   return Stored;
 }
 
-/// Arguments lead to nothing but what the calls hand over where all calls are
-/// known, and so do merges; what was allocated is known by its class alone.
-/// True where something that was taken for complete is not.
+/// Arguments lead only to what the calls pass if all calls are known; phis lead
+/// only to their operands. An allocation is known by its class alone. True if a
+/// pointer that counted as complete no longer does.
 bool PointsToSolver::findComplete() {
   bool First = !std::exchange(Assumed, true);
   if (First) {
@@ -305,8 +313,8 @@ bool PointsToSolver::findComplete() {
     }
   }
   findFilled();
-  // The largest set that holds itself up: what fails is taken out until
-  // nothing fails any more.
+  // The largest set that supports itself: removes pointers until no further one
+  // must be removed.
   bool Fell = First;
   for (bool Changed = true; Changed;) {
     Changed = false;
@@ -330,11 +338,16 @@ bool PointsToSolver::findComplete() {
 
 void PointsToSolver::findTargets() {
   makeNodes();
-  // Where a pointer turns out to lead to too much, what depends on that is
-  // looked at again.
-  while (findComplete() && !Budget::isSpent())
-    for (unsigned Round = 0; Round < MaxRounds && propagate(); ++Round)
-      ;
+  // If a pointer turns out to lead to more than it should, the pointers that
+  // depend on it are computed again.
+  while (findComplete() && !Budget::isSpent()) {
+    unsigned Round = 0;
+    while (Round < MaxRounds && propagate())
+      ++Round;
+    NumRounds += Round;
+    if (Round == MaxRounds)
+      LLVM_DEBUG(dbgs() << "points-to: stopped at the limit of rounds\n");
+  }
 }
 
 } // namespace tpc

@@ -1,8 +1,8 @@
-//===- PointsToSolver.h - Finds what pointers lead to ---------------------===//
+//===- PointsToSolver.h - Computes what pointers lead to ------------------===//
 //
-// The least fixed point of the inclusions, round by round; a pointer is looked
-// at again where what it takes its targets from has grown. What pointers in
-// memory lead to is kept by place, so that all loads of it share it.
+// Computes the least fixed point of the inclusions in rounds. A pointer is
+// updated when one of its sources has gained targets. The pointers in memory
+// are kept by place, so that all loads of a place share them.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_POINTSTOSOLVER_H
@@ -23,17 +23,17 @@ public:
       : R(R), Alias(Alias), Calls(Calls), Rules(Rules), M(M),
         PointerStoreIndex(Alias) {}
 
-  /// Fills in what the pointers of the module lead to.
+  /// Computes what the pointers of the module lead to.
   void findTargets();
 
 private:
-  /// The pointers that a pointer takes its targets from.
+  /// The pointers whose targets a pointer takes over.
   struct Node {
     const llvm::Value *V;
     llvm::SmallVector<const llvm::Value *, 2> Sources;
-    const llvm::Value *Container = nullptr; ///< leads to its elements
+    const llvm::Value *Container = nullptr; ///< if set, leads to its elements
     Locations Where = {};                   ///< of a load: what it reads
-    unsigned Done = 0;                      ///< when it was looked at
+    unsigned Done = 0;                      ///< when it was last updated
   };
   /// A store of a pointer.
   struct PointerStore {
@@ -41,11 +41,11 @@ private:
     Locations Where = {};
     unsigned Done = 0;
   };
-  /// The pointers that are kept at a place: what all loads of it find.
+  /// The pointers stored at a place, which all loads of it find.
   struct Content {
     Location Where;
-    /// Only what is stored through pointers without a known root: for places
-    /// with one, which share it.
+    /// Only what is stored through pointers without a known root. Places with a
+    /// root share it.
     bool Unrooted;
     Locations Found = {};
     unsigned Done = 0;
@@ -82,17 +82,18 @@ private:
   llvm::SmallVector<PointerStore, 0> PointerStores;
   LocationIndex PointerStoreIndex;
   llvm::SmallVector<Content, 0> Contents;
-  LocationMap<unsigned> ContentIndex[2]; ///< of all, and of Unrooted
+  LocationMap<unsigned>
+      ContentIndex[2]; ///< of all stores, and of Unrooted ones
   llvm::DenseMap<const llvm::Function *, Returned> Results;
-  /// Objects that hold pointers to a container's elements: iterators that are
-  /// returned in memory, with the container.
+  /// Objects that hold pointers to a container's elements (iterators that are
+  /// returned in memory), with the container.
   llvm::DenseMap<const llvm::Value *, llvm::SmallVector<const llvm::Value *, 1>>
       Iterators;
-  /// The time, and when the targets of a pointer or the pointers that are kept
-  /// in a slot became more.
+  /// The current time, and the times when a pointer gained targets or a slot
+  /// gained pointers.
   unsigned Now = 1;
-  bool Assumed = false; ///< the complete pointers were guessed
-  /// Locals that somebody else, or a copy, may put pointers into.
+  bool Assumed = false; ///< the complete pointers are an assumption
+  /// Locals into which other code, or a copy, may put pointers.
   llvm::DenseSet<const llvm::Value *> Filled;
   llvm::DenseMap<const llvm::Value *, unsigned> Grown;
   llvm::DenseMap<LocationIndex::Slot, unsigned> SlotGrown;

@@ -14,20 +14,21 @@ using namespace llvm;
 
 namespace tpc {
 
-/// Walks go through the callers and callees of a write. Beyond it every read
-/// sees every write.
+/// The walks go through the callers and callees of a write. Beyond the limit
+/// every read sees every write.
 static cl::opt<unsigned> MaxWalked(
     "tpc-max-shared-blocks", cl::Hidden, cl::init(5'000'000),
     cl::desc(
         "Basic blocks and functions that are walked for shared variables"));
 
-/// The lists are kept for each call. A call that can run more can run all.
+/// There is one list for each call. A call that can run more functions counts
+/// as running all.
 static cl::opt<unsigned>
     MaxRun("tpc-max-run", cl::Hidden, cl::init(256),
            cl::desc("Functions that are listed as run by one call"));
 
-/// True for the functions without a body in which other threads, or callbacks,
-/// have their turn.
+/// True for functions without a body in which other threads or callbacks may
+/// run.
 static bool letsOthersRun(const Function &F) {
   std::string Name = StringRef(qualifiedName(F.getName())).lower();
   StringRef Last = StringRef(Name).rsplit(':').second;
@@ -191,11 +192,11 @@ bool Reaching::canRun(Way &W, const Function &F) {
 }
 
 //===----------------------------------------------------------------------===//
-// From a write down, from a read up
+// The walks: from a write down, from a read up
 //===----------------------------------------------------------------------===//
 
-/// Goes through \p BB below \p From, or from its beginning; false where what
-/// \p Write put there is replaced.
+/// Goes through \p BB from below \p From, or from its beginning; false if the
+/// value of \p Write is replaced.
 bool Reaching::walkDown(const BasicBlock &BB, const Instruction *From,
                         const Instruction &Write, const Ends &At, Way &Out) {
   ArrayRef<const Instruction *> Own = At.of(BB);
@@ -206,15 +207,15 @@ bool Reaching::walkDown(const BasicBlock &BB, const Instruction *From,
   for (const Instruction *I : runnersIn(BB))
     if ((!From || From->comesBefore(I)) && (!End || I->comesBefore(End))) {
       Out.Runners.push_back(I);
-      // What an `invoke` throws can be overwritten on its way out.
+      // An exception thrown by an `invoke` may overwrite it on its way out.
       const auto *Call = dyn_cast<CallInst>(I);
       Out.Open |= Call && Thrown.leaves(*Call);
     }
   return !End;
 }
 
-/// True where control leaves the function at the end of \p BB, be it by a
-/// `throw`; not where the program ends.
+/// True if control leaves the function at the end of \p BB, by return or by
+/// `throw`. False if the program ends there.
 static bool isExit(const BasicBlock &BB) {
   const Instruction *End = BB.getTerminator();
   if (!isa<UnreachableInst>(End))
@@ -240,8 +241,9 @@ Reaching::Way &Reaching::after(const Instruction &Write,
   Known = std::make_unique<Way>();
   Known->Open = false;
   SmallPtrSet<const BasicBlock *, 8> Seen;
-  // Where something is thrown comes last: by then it is known which blocks are
-  // reached without that, and a `resume` in others lets out what \c Leaves.
+  // The blocks that throw come last. By then the blocks reached without an
+  // exception are known; a `resume` in any other block rethrows what \c Leaves
+  // the function.
   SmallVector<const BasicBlock *, 8> Work, Pads;
   bool Unwound = false, Leaves = false, Resumes = false;
   auto Through = [&](const BasicBlock &BB, const Instruction *From) {
@@ -276,8 +278,8 @@ Reaching::Way &Reaching::after(const Instruction &Write,
   return *Known;
 }
 
-/// Goes up through \p BB above \p Below, or from its end; the write that
-/// replaced what was there, or null.
+/// Goes up through \p BB from above \p Below, or from its end; returns the
+/// write that replaced the earlier value, or null.
 const Instruction *Reaching::walkUp(const BasicBlock &BB,
                                     const Instruction *Below, const Ends &At,
                                     Way &Out) {
@@ -312,7 +314,7 @@ Reaching::Way &Reaching::before(const Instruction &At, Variable V) {
   SmallVector<std::pair<const BasicBlock *, const Instruction *>, 8> Work;
   SmallPtrSet<const BasicBlock *, 8> SeenThrown;
   auto Above = [&](const BasicBlock &BB) {
-    // Before its function a local is nobody's.
+    // Nobody can write a local before its function begins.
     Known->Open |= !IsLocal && &BB == &BB.getParent()->getEntryBlock();
     for (const BasicBlock *Pred : predecessors(&BB)) {
       bool ByThrow = Thrown(Pred, &BB);
@@ -330,7 +332,7 @@ Reaching::Way &Reaching::before(const Instruction &At, Variable V) {
       continue;
     ++Walked;
     const Instruction *End = walkUp(*BB, Below, All, *Known);
-    // Of two ways through a block the longer one counts.
+    // If there are two ways through a block, the longer one counts.
     auto [It, New] = Known->Blocks.try_emplace(BB, End);
     if (!New && Below)
       It->second = End;
@@ -340,7 +342,7 @@ Reaching::Way &Reaching::before(const Instruction &At, Variable V) {
   return *Known;
 }
 
-/// True where \p Back, the way back from \p At, comes to \p Write.
+/// True if \p Back, the way back from \p At, reaches \p Write.
 bool Reaching::contains(const Way &Back, const Instruction &At,
                         const Instruction &Write) {
   auto NotBefore = [&](const Instruction *End) {

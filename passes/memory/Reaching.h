@@ -1,16 +1,17 @@
 //===- Reaching.h - Which reads of a member or global see a write ---------===//
 //
 // Reaching definitions (Aho, Sethi and Ullman, "Compilers", 10.5) for memory
-// that functions share. Inside a function a store replaces what an earlier one
-// put into the same variable of the same object. What is there when a function
-// returns is visible to everybody, what is there at a call to what the call can
-// run: a library's function what it is handed (see CalledBack). Where a call
-// leads to a `throw` of the user's (see Throws), what is there is visible to
-// the handler; other exceptions make no way, as for control dependence.
+// that functions share. Inside a function a store replaces the value of an
+// earlier store to the same variable of the same object. The value at a return
+// is visible to everybody. The value at a call is visible to the functions that
+// the call can run; a library function can run what its arguments provide (see
+// CalledBack). If a call leads to a `throw` in user code (see Throws), the
+// value is visible to the handler; other exceptions are ignored, as in control
+// dependence.
 //
-// Threads: what is replaced before the function returns is seen by no other
-// thread, unless the function waits, locks or lets callbacks run in between,
-// or the store is atomic.
+// Threads: a value that is replaced before the function returns is not seen by
+// other threads, unless the function waits, locks or lets callbacks run in
+// between, or the store is atomic.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_REACHING_H
@@ -32,8 +33,9 @@ namespace tpc {
 
 class Reaching {
 public:
-  /// Where a piece of memory is by the code of its function: so many bytes from
-  /// what an argument points to, from a global's or a local's beginning.
+  /// A piece of memory as the code of its function names it: a number of bytes
+  /// from the target of an argument, or from the beginning of a global or a
+  /// local.
   using Place = std::pair<const llvm::Value *, int64_t>;
   struct Variable {
     Place Where;
@@ -46,7 +48,7 @@ public:
            const ThrowsResult &Thrown, DebugTypes &Debug,
            llvm::ArrayRef<Replacement> ByCalls);
 
-  /// None where \p Pointer is not the same place whenever it is computed.
+  /// None if \p Pointer is not the same place each time it is computed.
   std::optional<Variable> variableAt(const llvm::Value *Pointer,
                                      uint64_t Bytes) const;
 
@@ -55,51 +57,52 @@ public:
     return {{&Local, -1}, 1};
   }
 
-  /// What \p Write, a store or call, always replaces.
+  /// The variable that \p Write, a store or call, always replaces.
   std::optional<Variable> replacedBy(const llvm::Instruction &Write) const;
-  /// All such writes in \p F that name their variable by \p Base.
+  /// All such writes in \p F whose variable is named by \p Base.
   Instructions replacingFrom(const llvm::Function &F, const llvm::Value *Base);
 
-  /// True where what \p Write puts into \p Written can still be there when
-  /// \p Read reads it, which names the variable \p Read (none: by a pointer
-  /// that may be another object's).
+  /// True if the value that \p Write puts into \p Written can still be there
+  /// when \p At reads it. \p Read is the variable that \p At names; none if
+  /// \p At reads through a pointer that may lead to another object.
   bool reaches(const llvm::Instruction &Write, std::optional<Variable> Written,
                const llvm::Instruction &At, std::optional<Variable> Read);
 
-  /// True where every read that is not itself narrowed sees \p Write.
+  /// True if every read that is not itself narrowed sees \p Write.
   bool isVisible(const llvm::Instruction &Write,
                  std::optional<Variable> Written) {
     return after(Write, Written).Open;
   }
-  /// True where \p At reads a variable that its function also replaces.
+  /// True if \p At reads a variable that its function also replaces.
   bool isNarrowed(const llvm::Instruction &At, std::optional<Variable> Read) {
     return Read && !endsOf(*At.getFunction(), *Read).All.empty();
   }
-  /// How often it was not looked who sees a write, for the unit is too large.
+  /// How often the search for the readers of a write was skipped because the
+  /// link unit is too large.
   unsigned givenUp() const { return GivenUp; }
 
 private:
-  /// What instructions can run besides themselves.
+  /// The functions that an instruction can run.
   struct Running {
     bool Anything = false;
-    /// In the order in which they were found: how far a search comes before
-    /// it is given up must not depend on addresses.
+    /// In the order in which they were found: how far a search gets before it
+    /// is given up must not depend on addresses.
     llvm::SmallSetVector<const llvm::Function *, 4> Functions;
   };
-  /// The way from a write to where others see it, or from a read back to where
-  /// others wrote.
+  /// The path from a write to the reads that see it, or from a read back to the
+  /// writes.
   struct Way {
     bool Open = true; ///< leads out of the function
     llvm::SmallVector<const llvm::Instruction *, 4> Runners;
-    /// Of Runners, once it was asked for.
+    /// Of Runners; computed when first needed.
     std::unique_ptr<Running> Closure;
-    /// Of a way back: the blocks that it leads through and the write at which
-    /// it ends in each, null where it goes through.
+    /// For a path back: its blocks and, for each, the write at which it ends,
+    /// or null if it passes through.
     llvm::DenseMap<const llvm::BasicBlock *, const llvm::Instruction *> Blocks;
     const llvm::Instruction *UpperEnd = nullptr; ///< in the block of the read
   };
-  /// The writes in a function that replace the whole of a variable, and those
-  /// of each block, in order.
+  /// The writes in a function that replace the whole variable, and those of
+  /// each block, in order.
   struct Ends {
     Instructions All;
     llvm::DenseMap<const llvm::BasicBlock *, Instructions> In;
@@ -133,12 +136,13 @@ private:
   llvm::DenseSet<const llvm::CallBase *> Unresolved;
   llvm::DenseMap<const llvm::CallBase *, Variable> Replacing;
   CalledBack Handed;
-  /// Functions that an instruction hands on, and all of them.
+  /// The functions whose address each instruction passes on, and all of them
+  /// together.
   llvm::DenseMap<const llvm::Instruction *,
                  llvm::SmallVector<const llvm::Function *, 1>>
       HandedOn;
   llvm::SmallVector<const llvm::Function *, 0> AllHandedOn;
-  /// Of a function: the writes that replace a variable, in order.
+  /// For each function: the writes that replace a variable, in order.
   struct Replacements {
     llvm::DenseMap<Place, Instructions> ByPlace;
     llvm::DenseMap<const llvm::Value *, Instructions> ByBase;
@@ -152,7 +156,7 @@ private:
       std::pair<std::pair<const llvm::Instruction *, Place>, uint64_t>,
       std::unique_ptr<Way>>
       After, Before;
-  Way Everywhere; ///< where nothing is known
+  Way Everywhere; ///< used if nothing is known
   llvm::DenseMap<
       std::pair<const llvm::Function *, Place>,
       llvm::SmallVector<std::pair<uint64_t, std::unique_ptr<Ends>>, 1>>

@@ -9,12 +9,11 @@ using namespace llvm;
 
 namespace tpc {
 
-/// True where \p A and \p B have the same fields, and these the same ones
-/// again: instances of one class template have its name, whatever they are made
-/// of.
+/// True if \p A and \p B have the same fields, recursively. All instances of a
+/// class template have its name, whatever their arguments.
 static bool looksAlike(const StructType &A, const StructType &B) {
   ArrayRef<Type *> Mine = A.elements(), Theirs = B.elements();
-  // As a base class, a class is there without the padding at its end.
+  // A base class has no padding at its end.
   if (A.hasName() && B.hasName() &&
       A.getName().contains(".base") != B.getName().contains(".base")) {
     size_t Common = std::min(Mine.size(), Theirs.size());
@@ -32,8 +31,8 @@ static bool looksAlike(const StructType &A, const StructType &B) {
 unsigned TypeNumbers::numberOf(StructType *T) {
   if (auto It = Numbers.find(T); It != Numbers.end())
     return It->second;
-  // Lambdas and classes of unnamed namespaces have their names to themselves.
-  // Without a name, nothing says that two are the same.
+  // Lambdas and classes of unnamed namespaces are unique to their file. Two
+  // types without a name cannot be matched at all.
   if (!T->hasName()) {
     Types.push_back(T);
     return Numbers[T] = Types.size() - 1;

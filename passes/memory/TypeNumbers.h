@@ -9,8 +9,8 @@
 
 namespace tpc {
 
-/// Numbers the classes of a module. The same class read from two files can be
-/// `class.A` and `class.A.7`: they get one number where they also look alike.
+/// Numbers the classes of a module. A class that two files define may occur as
+/// `class.A` and `class.A.7`: both get the same number if they look alike.
 class TypeNumbers {
 public:
   unsigned numberOf(llvm::StructType *T);

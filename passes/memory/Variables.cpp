@@ -10,8 +10,8 @@ namespace tpc {
 
 std::pair<const DICompositeType *, StringRef>
 VariableNames::fieldOf(const Location &L) const {
-  // The innermost field that the source names: what is inside a std::string,
-  // say, is not the user's to know.
+  // The innermost field that the source names. The inside of a std::string, for
+  // example, is not known to the user.
   for (const Step &S : reverse(L.Path))
     if (StringRef Name = Types.fieldName(S); !Name.empty())
       return {Types.sourceClassOf(S), Name};
@@ -37,8 +37,8 @@ std::string VariableNames::nameOf(const Location &L) const {
 }
 
 std::string VariableNames::fullNameOf(const Location &L) const {
-  // A name that begins so is the standard library's, in a container or pointer
-  // of the user's.
+  // Such names belong to the standard library, inside a container or smart
+  // pointer of the user.
   Location Own = L;
   auto [Class, Field] = fieldOf(Own);
   while (Field.starts_with("_")) {
@@ -47,7 +47,7 @@ std::string VariableNames::fullNameOf(const Location &L) const {
   }
   if (Field.empty())
     return rootName(L.Root);
-  // ROS's messages are typedefs of `Name_<Allocator>`.
+  // ROS messages are typedefs of `Name_<Allocator>`.
   auto [Plain, Arguments] = Class->getName().split('<');
   if (!Arguments.empty())
     Plain.consume_back("_");

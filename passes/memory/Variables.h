@@ -11,9 +11,9 @@ class VariableNames {
 public:
   explicit VariableNames(const LocationTypes &Types) : Types(Types) {}
 
-  /// The field's, global's or local's own name; empty where it has none.
+  /// The name of the field, global or local alone; empty if it has none.
   std::string nameOf(const Location &L) const;
-  /// The same, a field with its class: `Node::limit_`.
+  /// The same; a field has the name of its class before it: `Node::limit_`.
   std::string fullNameOf(const Location &L) const;
 
 private:

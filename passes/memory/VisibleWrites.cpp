@@ -23,26 +23,26 @@ VisibleWrites::VisibleWrites(Module &M, ModuleAnalysisManager &AM)
       Shared(M, AM.getResult<SimpleCallGraph>(M), AM.getResult<Throws>(M),
              AM.getResult<DebugTypesAnalysis>(M), Accesses.replacements()) {}
 
-/// The writes of \p L: its own, and those that copies of whole objects bring.
+/// The writes of \p L, including those through copies of whole objects.
 VisibleWrites::Writes VisibleWrites::allWrites(const Location &L) {
   AccessIndex::Found<Writes> Found = Accesses.writesOf(L);
   Found.Own.insert(Found.Copied.begin(), Found.Copied.end());
   return std::move(Found.Own);
 }
 
-/// Each write is held against each read. A variable with more writes is a
-/// buffer or a counter; all its writes are seen.
-static cl::opt<unsigned> MaxNarrowed(
-    "tpc-max-narrowed-writes", cl::Hidden, cl::init(64),
-    cl::desc("Writes of one variable that are told apart by who sees them"));
+/// Each write is compared with each read. A variable with more writes is
+/// usually a buffer or a counter; all its writes count as visible.
+static cl::opt<unsigned>
+    MaxNarrowed("tpc-max-narrowed-writes", cl::Hidden, cl::init(64),
+                cl::desc("Writes of one variable whose readers are computed"));
 
 static bool isLocalOf(const Location &L, const Instruction &At) {
   const auto *Local = dyn_cast_or_null<AllocaInst>(L.Root);
   return Local && Local->getFunction() == At.getFunction();
 }
 
-/// The pointer of \p I, a load or store, where what it leads to is all that
-/// \p I touches; null where that is a part of it.
+/// The pointer of \p I, a load or store, if \p I touches all that it points to;
+/// null if it touches only a part.
 const Value *VisibleWrites::placeOf(const Instruction &I) {
   auto [It, New] = Places.try_emplace(&I, nullptr);
   if (New && none_of(Pointers.partsOf(I),
@@ -51,7 +51,7 @@ const Value *VisibleWrites::placeOf(const Instruction &I) {
   return It->second;
 }
 
-/// The variable \p L at \p Pointer; none where that is null.
+/// The variable \p L at \p Pointer; none if \p Pointer is null.
 std::optional<Reaching::Variable>
 VisibleWrites::variableAt(const Value *Pointer, const Location &L) const {
   Type *T = elementOf(Types.typeAt(L));
@@ -61,8 +61,8 @@ VisibleWrites::variableAt(const Value *Pointer, const Location &L) const {
                            Layout.getTypeStoreSize(T).getKnownMinValue());
 }
 
-/// What \p Write, a write of \p L, writes; none where it may write less, or
-/// other things besides.
+/// What \p Write, a write of \p L, writes; none if it may write less, or other
+/// variables too.
 std::optional<Reaching::Variable>
 VisibleWrites::writtenBy(const Instruction &Write, const Location &L) const {
   if (!isa<StoreInst>(Write)) {
@@ -86,7 +86,8 @@ VisibleWrites::sharedWrites(const Location &L) {
   if (!New)
     return All;
   AccessIndex::Found<Writes> Found = Accesses.writesOf(L);
-  // Who sees them is not asked; they are collected again where they are needed.
+  // With too many writes, their readers are not computed, and the writes are
+  // collected again when needed.
   All.TooMany = Found.Own.size() + Found.Copied.size() > MaxNarrowed;
   if (All.TooMany)
     return All;
@@ -133,7 +134,7 @@ SmallVector<Instruction *, 8> VisibleWrites::writesOf(const Location &L,
 }
 
 ArrayRef<Instruction *> VisibleWrites::definitionsOf(const LoadInst &Load) {
-  // Whoever goes through the list may ask for others.
+  // While a caller iterates over the list, it may ask for other definitions.
   if (auto It = Definitions.find(&Load); It != Definitions.end())
     return *It->second;
   Writes All;
@@ -155,7 +156,8 @@ SmallVector<LoadInst *, 8> VisibleWrites::usesOf(const Instruction &Write,
     std::optional<Reaching::Variable> Written =
         variableAt(isa<StoreInst>(Write) ? placeOf(Write) : Pointer, L);
     Own.remove_if([&](LoadInst *Load) {
-      // Also where it is read through a reference that may be another's.
+      // Also if it is read through a reference, which may lead to another
+      // variable.
       if (isLocalOf(L, *Load))
         return !is_contained(definitionsOf(*Load), &Write);
       return !Shared.reaches(Write, Written, *Load,
@@ -175,7 +177,7 @@ SmallVector<LoadInst *, 8> VisibleWrites::usesOf(const Instruction &Write,
 // Whole objects
 //===----------------------------------------------------------------------===//
 
-/// The parts of the object at \p L, which \p At is handed by \p Pointer, that
+/// The parts of the object at \p L, which \p At gets by \p Pointer, that
 /// \p At's function replaces.
 SmallVector<VisibleWrites::Part, 4>
 VisibleWrites::replacedParts(const Location &L, const Instruction &At,
@@ -187,7 +189,7 @@ VisibleWrites::replacedParts(const Location &L, const Instruction &At,
   for (const Instruction *Write :
        Shared.replacingFrom(*At.getFunction(), Object->Where.first)) {
     const Location *Whole = Accesses.replacedBy(*Write);
-    // What a call replaces is known where it is among these, or not at all.
+    // What a call replaces is either listed here or not known.
     if (!Whole && !isa<StoreInst>(Write))
       continue;
     const Locations Own = Whole ? Locations{*Whole} : Pointers.touched(*Write);
@@ -208,11 +210,11 @@ SmallVector<Instruction *, 8> VisibleWrites::writesInto(const Location &L,
   SmallVector<Part, 4> Parts;
   if (!Local)
     Parts = replacedParts(L, At, Pointer);
-  // Part by part: the last write of it before \p At counts.
+  // For each part, the last write before \p At counts.
   auto Stays = [&](const Instruction &Write, const Location &Where) {
     if (!Local) {
       auto Way = Alias.partOf(L, Where);
-      auto It = find_if(Parts, [&](const Part &P) {
+      auto *It = find_if(Parts, [&](const Part &P) {
         return Way && Location::areSame(P.Way, *Way);
       });
       std::optional<Reaching::Variable> Read;

@@ -1,9 +1,9 @@
 //===- VisibleWrites.h - Which writes a read sees -------------------------===//
 //
-// Of the accesses that can meet (see AccessIndex.h) those that do, as far as
-// the order of the code says: of a local variable by LocalWrites.h, of what
-// functions share by Reaching.h. Writes that another one surely replaces on
-// every way to the read are left out.
+// Of the accesses that may touch the same memory (see AccessIndex.h), keeps
+// those that the order of the code allows: for a local variable by
+// LocalWrites.h, for shared memory by Reaching.h. A write is left out if other
+// writes replace its value on every path to the read.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_VISIBLEWRITES_H
@@ -19,11 +19,12 @@ public:
   VisibleWrites(llvm::Module &M, llvm::ModuleAnalysisManager &AM);
 
   /// The writes that can give \p Load its value: stores, and calls without a
-  /// body that are handed the variable. Copies of whole objects are followed.
+  /// body that get a pointer to the variable. Copies of whole objects are
+  /// followed.
   llvm::ArrayRef<llvm::Instruction *> definitionsOf(const llvm::LoadInst &Load);
 
-  /// The loads to which \p Write, a store or call that writes the scalar at
-  /// \p Pointer, can give the value.
+  /// The loads that can read the value that \p Write, a store or call, writes
+  /// to the scalar at \p Pointer.
   llvm::SmallVector<llvm::LoadInst *, 8> usesOf(const llvm::Instruction &Write,
                                                 const llvm::Value *Pointer);
 
@@ -32,34 +33,33 @@ public:
   llvm::SmallVector<llvm::Instruction *, 8>
   writesOf(const Location &L, const llvm::Instruction &At,
            const llvm::Value *Pointer);
-  /// The writes of what is in the object at \p L that \p At, which is handed it
-  /// by \p Pointer, can see.
+  /// The writes into the object at \p L that \p At, which gets a pointer
+  /// \p Pointer to it, can see.
   llvm::SmallVector<llvm::Instruction *, 8>
   writesInto(const Location &L, const llvm::Instruction &At,
              const llvm::Value *Pointer);
 
-  /// True where \p At, which reads \p L at \p Pointer, sees the same writes as
-  /// all that reads it elsewhere: it is no local variable of \p At's function,
-  /// and no write of it is replaced where others do not see it.
+  /// True if \p At, which reads \p L at \p Pointer, sees the same writes as all
+  /// other reads of it: it is not a local variable of \p At's function, and no
+  /// write of it is replaced before others can see it.
   bool isSharedBy(const Location &L, const llvm::Instruction &At,
                   const llvm::Value *Pointer);
 
-  /// True where \p Call gives what is at \p Pointer a new value, whatever was
-  /// there.
+  /// True if \p Call always gives the object at \p Pointer a new value.
   bool replaces(const llvm::CallBase &Call, const llvm::Value *Pointer) const;
 
-  /// How often it was not looked which reads see a write, for the unit is too
-  /// large: there, all do.
+  /// How often the search for the readers of a write was skipped because the
+  /// link unit is too large. In that case all reads see it.
   unsigned givenUp() const { return Locals.givenUp() + Shared.givenUp(); }
 
 private:
   using Writes = AccessIndex::Writes;
   /// The writes of a variable that is not local.
   struct SharedWrites {
-    Writes Own;    ///< of itself
-    Writes Copied; ///< of what copies of whole objects put into it
+    Writes Own;    ///< of the variable itself
+    Writes Copied; ///< through copies of whole objects
     bool TooMany = false;
-    bool Narrowed = false; ///< not all that read it see all of Own
+    bool Narrowed = false; ///< some read of it does not see all of Own
   };
   /// A part of an object, and how a function names it.
   struct Part {
@@ -85,7 +85,7 @@ private:
   AccessIndex &Accesses;
   LocalWrites Locals;
   Reaching Shared;
-  /// What was asked for before.
+  /// Cached results.
   llvm::DenseMap<const llvm::LoadInst *,
                  std::unique_ptr<llvm::SmallVector<llvm::Instruction *, 8>>>
       Definitions;

@@ -12,16 +12,17 @@ using namespace llvm;
 
 namespace tpc {
 
-/// Nobody reads more, and the file is read at every diagnosis. All are counted.
+/// Nobody reads more, and every diagnosis reads the file. All of them are
+/// counted.
 static cl::opt<unsigned> MaxListed(
     "tpc-max-listed", cl::Hidden, cl::init(200),
     cl::desc("Blind spots and unexposed comparisons that are listed"));
 
 namespace {
 
-/// What there is to list: each place and parameter once, in the order of kinds,
-/// places and names. A large unit has millions, which is why there are only
-/// numbers here until it is known which few are told.
+/// The entries to list: each place and parameter once, ordered by kind, place
+/// and name. A large link unit has millions, so only numbers are kept until it
+/// is known which few are written.
 class Listing {
 public:
   using Place = std::tuple<std::string, unsigned, unsigned>;
@@ -36,7 +37,7 @@ public:
       Names.try_emplace(R.Name, 0);
     unsigned Rank = 0;
     for (auto &[Name, Number] : Names)
-      Number = ++Rank; // 0 is for what is about no parameter
+      Number = ++Rank; // 0 is for entries without a parameter
     for (const ParameterRead &R : Reads)
       NameOf.push_back(Names.at(R.Name));
   }
@@ -49,7 +50,7 @@ public:
     Waiting.push_back({{Kind, 0, nameOf(Read), Index}, Loc});
   }
 
-  /// The parameter \p Name at \p P, as place and name of an entry.
+  /// The parameter \p Name at \p P, as the place and name of an entry.
   std::optional<std::pair<unsigned, unsigned>> at(const Place &P,
                                                   const std::string &Name) {
     auto Found = Places.find(P);
@@ -95,7 +96,7 @@ private:
 
   const Options &Opts;
   std::map<std::string, unsigned> Names;
-  std::vector<unsigned> NameOf; // by read
+  std::vector<unsigned> NameOf; // by the number of the read
   std::map<Place, SmallVector<const DILocation *, 1>> Places;
   DenseMap<const DILocation *, unsigned> PlaceOf;
   std::vector<std::pair<Entry, const DILocation *>> Waiting;
@@ -128,7 +129,7 @@ ExplainInfo::ExplainInfo(Module &M, ModuleAnalysisManager &AM,
       Explain(Usage, AM.getResult<BackwardPropagate>(M), Reads,
               AM.getResult<ExternCallFinder>(M), Calls, Words) {}
 
-/// `file`, `lineno`, `column`, `function` and the line's text.
+/// `file`, `lineno`, `column`, `function` and the text of the line.
 json::Object ExplainInfo::placed(const DILocation *Loc) {
   if (!Loc)
     return json::Object{{"file", ""},
@@ -195,7 +196,7 @@ ListedPlaces ExplainInfo::blindSpots() {
     if (New)
       It->second = Words.userPlace(*S.At);
     const DILocation *Loc = It->second;
-    // What a library does inside is its own business, and is counted.
+    // Values that end inside a library are only counted.
     if (Loc || !S.At->getDebugLoc())
       All.add(S.Kind, Loc, S.Read, Index);
   }

@@ -16,10 +16,11 @@
 
 namespace tpc {
 
-/// Source files, for the text of a line.
+/// Reads source files, for the text of a line.
 class SourceLines {
 public:
-  /// Line \p Number of \p Path, stripped; null where it cannot be read.
+  /// Line \p Number of \p Path without leading and trailing blanks; null if it
+  /// cannot be read.
   llvm::json::Value line(llvm::StringRef Path, unsigned Number);
 
 private:
@@ -30,21 +31,21 @@ private:
   llvm::StringMap<File> Files;
 };
 
-/// A place of the source where there are comparisons, with one key.
+/// A place in the source with comparisons that share a key.
 struct SourcePlace {
-  std::string File; ///< relative to the root of the sources
+  std::string File; ///< relative to the source root
   unsigned Line = 0, Column = 0;
   std::string Source; ///< the parameter; empty for a constant
   llvm::SmallVector<const Comparison *, 1> Instances; ///< nearest first
 };
 
-/// As many places as are listed, and how many there are.
+/// The places that are listed, and how many there are in all.
 struct ListedPlaces {
   llvm::json::Array List;
   size_t Count = 0;
 };
 
-/// Writes down why a module's comparisons are found, and why others are not.
+/// Writes why a module's comparisons are found, and why others are not.
 class ExplainInfo {
 public:
   ExplainInfo(llvm::Module &M, llvm::ModuleAnalysisManager &AM,
@@ -52,12 +53,12 @@ public:
 
   llvm::json::Array path(const Comparison &C);
 
-  /// Comparisons with parameters in the user's sources on which nothing
-  /// exposed depends; without the places that are in \p Comparisons, where
-  /// another instance of the same template is exposed.
+  /// Comparisons with parameters in user code that no exposed statement depends
+  /// on. Leaves out the places in \p Comparisons, where another instance of the
+  /// same template is exposed.
   ListedPlaces notExposed(llvm::ArrayRef<SourcePlace> Comparisons);
 
-  /// The blind spots in the user's sources, and those that have no place.
+  /// The blind spots in user code, and those that have no place.
   ListedPlaces blindSpots();
 
 private:

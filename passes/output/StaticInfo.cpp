@@ -37,7 +37,7 @@ static json::Value textOrNull(StringRef Text) {
 
 namespace {
 
-/// Writes down what the analyses of a module found.
+/// Writes what the analyses of a module found.
 class Describer {
 public:
   Describer(Module &M, ModuleAnalysisManager &AM, const Options &Opts)
@@ -128,8 +128,8 @@ json::Array Describer::exposing() const {
   return List;
 }
 
-/// The variable that holds the threshold where it is compared; else the one
-/// that the parameter was read into.
+/// The variable that holds the threshold where it is compared; if there is
+/// none, the variable that the parameter was read into.
 std::string Describer::variable(const Comparison &C) const {
   const Value *V = C.Compare ? C.Compare->getOperand(C.Threshold) : C.FlagValue;
   while (true) {
@@ -175,7 +175,7 @@ std::string Describer::source(const Comparison &C) const {
 
 json::Object Describer::comparison(const SourcePlace &P) {
   const Comparison &C = *P.Instances.front();
-  // A constant is read nowhere.
+  // A constant has no read.
   const ParameterRead *Read =
       C.Reads.empty() ? nullptr : &Reads[C.Reads.front()];
   const ExposingStatement &Nearest = Exposing[C.Slice.Exposing];
@@ -206,8 +206,9 @@ json::Object Describer::comparison(const SourcePlace &P) {
   return O;
 }
 
-/// The comparisons in the order of the source; one a key: several instances of
-/// a template are one place, and the nearest one, put first, speaks for them.
+/// The comparisons in the order of the source, one for each key. Several
+/// instances of a template are one place; the instance nearest to an exposing
+/// statement comes first and represents it.
 std::vector<SourcePlace> Describer::comparisons() const {
   std::vector<SourcePlace> All;
   StringMap<size_t> Known;
@@ -261,7 +262,7 @@ json::Object Describer::counts(ArrayRef<SourcePlace> Comparisons) const {
       {"not_instrumented", 0}};
 }
 
-/// What every file says, analysis or not.
+/// The fields that every file has, also if the analysis failed.
 static json::Object header(const Options &Opts) {
   return json::Object{{"schema", SchemaVersion},
                       {"link_unit", json::fixUTF8(Opts.LinkUnit)},
@@ -273,8 +274,9 @@ static json::Object header(const Options &Opts) {
                                             {"profile", Opts.Profile}}}};
 }
 
-/// \p O as it stands in the array that is an attribute of the whole. An object
-/// of JSON takes kilobytes, and a large unit has a hundred thousand of them.
+/// \p O as text, as it stands in an array that is a field of the top object. A
+/// JSON object takes kilobytes of memory, and a large link unit has a hundred
+/// thousand of them.
 static std::string written(json::Object O) {
   std::string Text;
   raw_string_ostream OS(Text);
@@ -283,7 +285,7 @@ static std::string written(json::Object O) {
   for (char C : Text) {
     Shifted += C;
     if (C == '\n')
-      Shifted.append(2 * Indent, ' ');
+      Shifted.append(size_t(2) * Indent, ' ');
   }
   return Shifted;
 }

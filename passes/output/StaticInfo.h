@@ -14,22 +14,23 @@
 
 namespace tpc {
 
-/// What a unit's file says. The comparisons are text already: there are many.
+/// The contents of a link unit's file. The comparisons are stored as text
+/// because there are many.
 struct UnitInfo {
   llvm::json::Object Fields;
   std::vector<std::string> Comparisons;
 };
 
-/// What a unit's file says of the analysis of \p M.
+/// The contents of the file for the analysed module \p M.
 UnitInfo describe(llvm::Module &M, llvm::ModuleAnalysisManager &AM,
                   const Options &Opts);
 
-/// What a unit's file says where the analysis failed because of \p Why;
-/// \p Known has the counts as far as it came, or is null.
+/// The contents of the file if the analysis failed because of \p Why. \p Known
+/// holds the counts so far, or is null.
 UnitInfo describeFailure(const Options &Opts, llvm::StringRef Why,
                          const llvm::json::Object *Known);
 
-/// Writes \p Unit to \p Path, beside and then renamed.
+/// Writes \p Unit to a temporary file beside \p Path and renames that.
 llvm::Error writeJson(UnitInfo Unit, llvm::StringRef Path);
 
 } // namespace tpc

@@ -1,7 +1,6 @@
-//===- Follower.cpp - Carries values on -----------------------------------===//
+//===- Follower.cpp - Follows values --------------------------------------===//
 //
-// What is done with a value that comes to a comparison is in
-// ParamUsageFinder.cpp.
+// ParamUsageFinder.cpp handles a value that reaches a comparison.
 //
 //===----------------------------------------------------------------------===//
 #include "params/Follower.h"
@@ -17,10 +16,11 @@ using namespace llvm;
 namespace tpc {
 
 /// Each level multiplies the states by the calls of a function. Below this
-/// depth a value comes out of a function at every call of it.
+/// depth, a value that leaves a function is followed to all calls of it.
 static cl::opt<unsigned> MaxCallDepth(
     "tpc-max-call-depth", cl::Hidden, cl::init(8),
-    cl::desc("Nested calls that a value on its way forward is matched to"));
+    cl::desc(
+        "Nested calls that are matched while a value is followed forward"));
 
 const CallPath *Follower::enterCall(const CallBase *Call,
                                     const CallPath *Outer) {
@@ -31,14 +31,16 @@ const CallPath *Follower::enterCall(const CallBase *Call,
   return Paths.back().get();
 }
 
-/// Values times their origins: quadratic in generated code. Beyond it a flag is
-/// reported at its first origin alone.
+/// There are as many states as values times origins, which is quadratic in
+/// generated code. Beyond the limit a flag is reported at its first origin
+/// only.
 static cl::opt<unsigned> MaxOrigins(
     "tpc-max-origins", cl::Hidden, cl::init(4096),
-    cl::desc("Origins of merged values that are told apart for one parameter"));
+    cl::desc(
+        "Origins of merged values that are distinguished for one parameter"));
 
-/// \p Via is the instruction that brings the value to S.V; none where S.V
-/// computes it itself.
+/// \p Via is the instruction that passes the value on to S.V; none if S.V
+/// itself computes it.
 void Follower::push(State S, Instruction *Via) {
   Transform::KindTy Kind = S.How.kind();
   bool NewOrigin = S.Origin && !IsOutcome && SeenOrigins.size() < MaxOrigins &&
@@ -61,7 +63,8 @@ void Follower::stopAt(ValueEnd::KindTy Kind, Instruction *At) {
   Usage.Ends.push_back({Kind, ReadAtHand, At});
 }
 
-/// The state to go on from; one that was come to more simply is done with.
+/// The next state. Skips a state that was since reached with simpler
+/// arithmetic.
 std::optional<Follower::State> Follower::takeNext() {
   while (std::optional<State> S = Work.pop())
     if ((S->IsAnotherOrigin || Seen.lookup(placeOf(*S)) >= S->How.kind()) &&
@@ -76,8 +79,8 @@ Transform throughChoice(Transform How, const Instruction &I) {
   return How;
 }
 
-/// A store that may write to more variables than this is one that the points-to
-/// analysis lost; what is found behind it is reported as doubtful.
+/// If a store may write to more variables than this, the points-to analysis has
+/// lost track; comparisons found behind it are reported as doubtful.
 static cl::opt<unsigned> MaxTargets(
     "tpc-max-store-targets", cl::Hidden, cl::init(16),
     cl::desc(
@@ -93,7 +96,7 @@ const Follower::Stored &Follower::describeStore(StoreInst &Store) {
   return *Known;
 }
 
-/// A value goes on to the loads of the variable that it is stored to.
+/// The value goes on to the loads of the variable that it is stored to.
 void Follower::store(const State &S, StoreInst &Store) {
   const Stored &To = describeStore(Store);
   if (To.Targets == 0)
@@ -121,9 +124,8 @@ void Follower::store(const State &S, StoreInst &Store) {
   load(Next, Store, Written, To.Loads);
 }
 
-/// The value of \p S, as it stands in the scalar, goes on to \p Loads, which
-/// read what \p Write has put to
-/// \p Written.
+/// Follows the value of \p S, as stored in the scalar, to \p Loads, which read
+/// what \p Write has written to \p Written.
 void Follower::load(const State &S, Instruction &Write,
                     ArrayRef<ScalarPart> Written, ArrayRef<LoadInst *> Loads) {
   bool WasWide = any_of(Written, [](const ScalarPart &P) { return P.Size; });
@@ -140,7 +142,7 @@ void Follower::load(const State &S, Instruction &Write,
       push(std::move(Next), &Write);
       continue;
     }
-    // The scalar that was written, wherever it stands in what is read.
+    // The scalar that was written, wherever it is in the value that is read.
     for (const ScalarPart &To : Read) {
       if (none_of(Written, [&](const ScalarPart &From) {
             return Accesses.reaches(From.Where, To.Where);
@@ -156,7 +158,7 @@ void Follower::load(const State &S, Instruction &Write,
   }
 }
 
-/// True for the intrinsics that give back their first operand.
+/// True for intrinsics that return their first operand.
 static bool isCopy(const Instruction &I, const Use &U) {
   const auto *Call = dyn_cast<IntrinsicInst>(&I);
   if (!Call || U.getOperandNo() != 0)
@@ -172,8 +174,8 @@ static bool isCopy(const Instruction &I, const Use &U) {
   }
 }
 
-/// Carries what is at \p U on where the user only moves it in a register. False
-/// where it does something else, or would lose it.
+/// Follows the value at \p U if its user only moves it within a register. False
+/// if the user does something else, or loses the value.
 bool Follower::followRepacked(const State &S, Use &U) {
   Repacked R = repack(U, S.In);
   if (R.Kind == Repacked::None)
@@ -188,9 +190,8 @@ bool Follower::followRepacked(const State &S, Use &U) {
   return true;
 }
 
-/// Carries what is at \p U on to where it is the same value still: casts,
-/// merges, variables, arguments, results. False where \p U does something
-/// else with it.
+/// Follows the value at \p U to where it is still the same value: casts, phis,
+/// variables, arguments, results. False if \p U does something else with it.
 bool Follower::carry(const State &S, Use &U) {
   auto *I = cast<Instruction>(U.getUser());
   if (isa<CastInst>(I) || isa<FreezeInst>(I) || isCopy(*I, U)) {

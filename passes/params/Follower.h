@@ -1,4 +1,4 @@
-//===- Follower.h - The way of a parameter's value ------------------------===//
+//===- Follower.h - Follows the value of a parameter ----------------------===//
 #ifndef TPC_FOLLOWER_H
 #define TPC_FOLLOWER_H
 
@@ -18,15 +18,15 @@
 
 namespace tpc {
 
-/// The calls that a value went into, the last one first.
+/// The calls by which a value entered functions, the last one first.
 struct CallPath {
   const llvm::CallBase *Call;
   const CallPath *Outer;
   unsigned Depth;
 };
 
-/// Follows values forward. Two kinds: a parameter's value, up to the
-/// comparisons, and a comparison's outcome, up to the predicates.
+/// Follows values forward: the value of a parameter to the comparisons, and the
+/// outcome of a comparison to the predicates.
 class Follower {
 public:
   Follower(llvm::Module &M, llvm::ModuleAnalysisManager &AM)
@@ -45,18 +45,17 @@ private:
     Transform How;
     const CallPath *Path;
     bool Direct; ///< of an outcome: see Decision
-    /// Where V is several numbers in one: the bits that are this one.
+    /// If V holds several numbers: the bits that are this one.
     std::optional<Bits> In = std::nullopt;
-    /// Where control flow has merged V with other values: the last value
-    /// before that.
+    /// If a phi merged V with other values: the last value before that.
     llvm::Value *Origin = nullptr;
-    /// V was come to before, from another Origin: what it decides stands at
-    /// this one as well.
+    /// V was already reached from another Origin; what V decides counts for
+    /// this one too.
     bool IsAnotherOrigin = false;
     unsigned Way = Hop::None; ///< number of the hop that led here
   };
-  /// By kind of Transform: what comes to a place in several ways is followed on
-  /// from there with the simplest arithmetic.
+  /// Ordered by kind of Transform: a value that is reached on several paths is
+  /// followed further with the simplest arithmetic.
   class Worklist {
   public:
     void push(State S) {
@@ -99,9 +98,10 @@ private:
   const Stored &describeStore(llvm::StoreInst &Store);
   void store(const State &S, llvm::StoreInst &Store);
   void stopAt(ValueEnd::KindTy Kind, llvm::Instruction *At);
-  /// Nobody asks for the way of a value that is compared nowhere.
+  /// Nobody asks for the path of a value that is never compared.
   void forgetHops(size_t From) {
-    Usage.Hops.erase(Usage.Hops.begin() + From, Usage.Hops.end());
+    Usage.Hops.erase(Usage.Hops.begin() + static_cast<ptrdiff_t>(From),
+                     Usage.Hops.end());
   }
   void push(State S, llvm::Instruction *Via = nullptr);
   const CallPath *enterCall(const llvm::CallBase *Call, const CallPath *Outer);
@@ -119,7 +119,7 @@ private:
   const RuleMatches &Rules;
   const TextUsage Texts;
 
-  // Very many values may come to one place.
+  // Very many values may reach one place.
   llvm::DenseMap<const llvm::StoreInst *, std::unique_ptr<Stored>> Stores;
   llvm::DenseMap<const llvm::LoadInst *,
                  std::unique_ptr<llvm::SmallVector<ScalarPart, 1>>>
@@ -128,9 +128,9 @@ private:
   ParameterUsage Usage;
   Worklist Work;
   unsigned ReadAtHand = 0;
-  bool IsOutcome = false;    ///< what is followed is not the value itself
-  unsigned Here = Hop::None; ///< hop that led to the state at hand
-  /// The simplest arithmetic with which a value was come to, by each call.
+  bool IsOutcome = false;    ///< an outcome is followed, not the value itself
+  unsigned Here = Hop::None; ///< the hop that led to the current state
+  /// The simplest arithmetic with which a value was reached, for each call.
   llvm::DenseMap<std::pair<const llvm::Value *, const llvm::CallBase *>,
                  Transform::KindTy>
       Seen;
@@ -139,8 +139,8 @@ private:
   llvm::SmallVector<std::unique_ptr<CallPath>, 16> Paths;
 };
 
-/// \p How, and what \p I, a merge or a load, makes of it where it takes the
-/// value or a constant, whichever is smaller or larger.
+/// \p How, extended if \p I, a phi, select or load, takes the smaller or the
+/// larger of the value and a constant.
 Transform throughChoice(Transform How, const llvm::Instruction &I);
 
 } // namespace tpc

@@ -34,13 +34,14 @@ bool isSameVariable(const Value *A, const Value *B) {
 
 namespace {
 
-/// One of the two values; with Pointed what a pointer leads to.
+/// One of the two values; with Pointed, the value that a pointer leads to.
 struct Side {
   const Value *V;
   bool Pointed;
 };
 
-/// A merge of two values and the comparison that decides: True where it holds.
+/// A merge of two values, and the comparison that chooses: True if the
+/// comparison holds.
 struct Merged {
   const CmpInst *Compare;
   Side True, False;
@@ -48,7 +49,7 @@ struct Merged {
 
 } // namespace
 
-/// The one constant that the local variable \p Pointer ever holds.
+/// The only constant that the local variable \p Pointer ever holds.
 static const Value *pointedConstant(const Value *Pointer) {
   if (const auto *Global = dyn_cast<GlobalVariable>(Pointer))
     return Global->isConstant() && Global->hasInitializer()
@@ -75,8 +76,8 @@ static std::optional<double> constantOf(const Side &S) {
   return V ? constantNumber(V) : std::nullopt;
 }
 
-/// True where \p V is the value of \p S, as far as the text goes: nothing that
-/// the idiom has in between changes a variable.
+/// True if \p V has the same text as the value of \p S: nothing in the idiom
+/// changes a variable in between.
 static bool isSide(const Value *V, const Side &S) {
   if (auto C = constantOf(S))
     return constantNumber(V) == C ||
@@ -91,14 +92,14 @@ static bool isSide(const Value *V, const Side &S) {
           isSameVariable(Load->getPointerOperand(), Own->getPointerOperand()));
 }
 
-/// The branch that decides by which edge a phi with two is entered, and the
-/// number of the phi's way where its condition holds.
+/// The branch that decides by which of its two edges a phi is entered, and the
+/// index of the edge taken if its condition holds.
 static std::optional<std::pair<const BranchInst *, unsigned>>
 deciderOf(const PHINode &Phi) {
   if (Phi.getNumIncomingValues() != 2)
     return std::nullopt;
-  // The first block of a way that is nobody else's; null where the deciding
-  // block itself goes on to the phi.
+  // The first block that belongs only to this edge; null if the deciding block
+  // leads directly to the phi.
   auto Decider = [](const BasicBlock *BB, const BasicBlock *&First) {
     First = nullptr;
     const auto *Br = dyn_cast<BranchInst>(BB->getTerminator());
@@ -160,7 +161,7 @@ std::optional<Choice> choiceOf(const Instruction &Merge) {
     P = CmpInst::getSwappedPredicate(P);
   else if (!isSide(L, M->True) || !isSide(R, M->False))
     return std::nullopt;
-  // The first one is taken where it is less, or where it is greater.
+  // The first value is chosen if it is less, or if it is greater.
   switch (P) {
   case CmpInst::ICMP_SLT:
   case CmpInst::ICMP_SLE:
@@ -181,8 +182,8 @@ std::optional<Choice> choiceOf(const Instruction &Merge) {
   }
 }
 
-/// True where \p A and \p B are computed alike from the same variables, which
-/// nothing changes in between but in programs that are not written.
+/// True if \p A and \p B are computed in the same way from the same variables,
+/// which no sensible program changes in between.
 static bool isSameValue(const Value *A, const Value *B, unsigned Depth = 0) {
   if (A == B)
     return true;

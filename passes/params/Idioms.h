@@ -1,8 +1,8 @@
-//===- Idioms.h - What takes several instructions to say ------------------===//
+//===- Idioms.h - Code patterns of several instructions -------------------===//
 //
-// std::min, std::max and std::clamp, inlined, and what people write instead: a
-// value that control flow merges from two others, as a comparison of the same
-// two decides. And squares, whose factors are computed twice.
+// Recognises std::min, std::max and std::clamp after inlining, and the code
+// that people write instead: control flow merges two values, and a comparison
+// of the same two chooses. Also squares whose factors are computed twice.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_IDIOMS_H
@@ -15,21 +15,21 @@
 namespace tpc {
 
 struct Choice {
-  bool Largest;    ///< the larger one; else the smaller one
-  double Constant; ///< one of the two; the other is a value of the program
+  bool Largest;    ///< the larger of the two; otherwise the smaller
+  double Constant; ///< one of the two; the other is computed by the program
 };
 
 /// How \p Merge (a phi, a select, or a load through a pointer that is one)
-/// chooses between a constant and another value; none where it does not.
+/// chooses between a constant and another value; none if it does not.
 std::optional<Choice> choiceOf(const llvm::Instruction &Merge);
 
-/// True where \p A and \p B are pointers to the same variable of the same
-/// object, by the way that they are computed. A pointer that is read twice is
-/// taken for the same one.
+/// True if \p A and \p B point to the same variable of the same object, judged
+/// by how they are computed. A pointer that is read twice counts as the same
+/// pointer.
 bool isSameVariable(const llvm::Value *A, const llvm::Value *B);
 
-/// Whether \p I multiplies a value with itself, be it that it is computed
-/// twice: 1, or -1 where one of the two is negated; else 0.
+/// Whether \p I multiplies a value with itself, even if it is computed twice:
+/// 1, or -1 if one factor is negated; otherwise 0.
 int squareOf(const llvm::Instruction &I);
 
 } // namespace tpc

@@ -1,7 +1,8 @@
 //===- ParamCallFinder.h - The parameter reads ----------------------------===//
 //
-// Thesis A.9: which calls put a parameter's value into a variable, by the
-// rules; with the parameter's name and default where they are constant.
+// Thesis A.9: which calls put the value of a parameter into a variable,
+// according to the rules; with the name and the default of the parameter if
+// they are constant.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_PARAMCALLFINDER_H
@@ -17,17 +18,17 @@ namespace tpc {
 struct ParameterRead {
   llvm::CallBase *Call;
   const Rule *Row;
-  std::string Name;          ///< with `<dynamic>` for what no constant gives
-  std::string Type;          ///< C++ type of the value, as demangled
+  std::string Name; ///< `<dynamic>` stands for parts that are not constant
+  std::string Type; ///< C++ type of the value, as demangled
   llvm::json::Value Default; ///< number, bool, string or null
-  /// Where the value is written; null where it is the call's result.
+  /// Where the value is written; null if it is the result of the call.
   llvm::Value *Target;
-  /// Where the value is first seen, if it is neither the result nor written
-  /// by the call.
+  /// Where the value first appears, if it is neither the result nor written by
+  /// the call.
   llvm::SmallVector<llvm::Value *, 1> Values = {};
 };
 
-/// \p C, a number of the C++ type \p Type, as JSON; null for what is no number.
+/// \p C, a number of the C++ type \p Type, as JSON; null if it is not a number.
 llvm::json::Value jsonOf(const llvm::Constant &C, llvm::StringRef Type);
 
 class ParamCallFinder : public llvm::AnalysisInfoMixin<ParamCallFinder> {

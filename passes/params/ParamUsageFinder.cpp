@@ -33,25 +33,52 @@ SmallVector<Hop, 16> ParameterUsage::pathTo(unsigned Last) const {
   return Path;
 }
 
-bool comparesValues(const CmpInst &Compare) {
-  switch (Compare.getPredicate()) {
-  case CmpInst::FCMP_FALSE:
-  case CmpInst::FCMP_TRUE:
-  case CmpInst::FCMP_ORD:
-  case CmpInst::FCMP_UNO:
-    return false;
+StringRef relationOf(CmpInst::Predicate P) {
+  switch (P) {
+  case CmpInst::ICMP_EQ:
+  case CmpInst::FCMP_OEQ:
+  case CmpInst::FCMP_UEQ:
+    return "==";
+  case CmpInst::ICMP_NE:
+  case CmpInst::FCMP_ONE:
+  case CmpInst::FCMP_UNE:
+    return "!=";
+  case CmpInst::ICMP_SGT:
+  case CmpInst::ICMP_UGT:
+  case CmpInst::FCMP_OGT:
+  case CmpInst::FCMP_UGT:
+    return ">";
+  case CmpInst::ICMP_SGE:
+  case CmpInst::ICMP_UGE:
+  case CmpInst::FCMP_OGE:
+  case CmpInst::FCMP_UGE:
+    return ">=";
+  case CmpInst::ICMP_SLT:
+  case CmpInst::ICMP_ULT:
+  case CmpInst::FCMP_OLT:
+  case CmpInst::FCMP_ULT:
+    return "<";
+  case CmpInst::ICMP_SLE:
+  case CmpInst::ICMP_ULE:
+  case CmpInst::FCMP_OLE:
+  case CmpInst::FCMP_ULE:
+    return "<=";
   default:
-    return true;
+    return "";
   }
 }
 
-/// True for the operations that make one truth value of two.
+bool comparesValues(const CmpInst &Compare) {
+  return !relationOf(Compare.getPredicate()).empty();
+}
+
+/// True for operations that combine two truth values into one.
 static bool isLogical(const Instruction &I) {
   return I.getOpcode() == Instruction::And ||
          I.getOpcode() == Instruction::Or || I.getOpcode() == Instruction::Xor;
 }
 
-/// True where \p I decides by \p U.
+/// True if \p I decides by \p U.
 static bool decidesBy(const Instruction &I, const Use &U) {
   return isPredicate(I) && U.get() == conditionOf(I) &&
          !(isa<SelectInst>(I) && U.getOperandNo() != 0);
@@ -75,15 +102,13 @@ SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome,
       auto *I = dyn_cast<Instruction>(U.getUser());
       if (!I)
         continue;
-      if (!S.In && decidesBy(*I, U))
+      if (!S.In && decidesBy(*I, U)) {
         Found.push_back({I, S.Direct, S.Way});
-      else if (followRepacked(S, U))
         continue;
-      else if (S.In && !carry(S, U))
-        stopAt(ValueEnd::Outcome, I);
-      else if (S.In)
+      }
+      if (followRepacked(S, U))
         continue;
-      else if (isLogical(*I) || isa<ICmpInst>(I))
+      if (!S.In && (isLogical(*I) || isa<ICmpInst>(I)))
         push({I, {}, S.Path, S.Direct});
       else if (!carry(S, U))
         stopAt(ValueEnd::Outcome, I);
@@ -98,11 +123,11 @@ SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome,
   return Found;
 }
 
-/// \p V, made of what \p S follows, decides \p D by itself.
+/// Adds a flag: \p V, computed from what \p S follows, decides \p D by itself.
 void Follower::addFlag(const State &S, Value *V, Decision D, unsigned Read,
                        bool IsOperand) {
   ParameterComparison C;
-  // An argument has no place of its own: there the flag stands at the branch.
+  // An argument has no place of its own, so the flag is placed at the branch.
   C.IsOperand = IsOperand && isa<Instruction>(V);
   C.How = S.How;
   C.ByArgument = S.Path && Calls.callers(D.Predicate->getFunction()).size() > 1;
@@ -112,8 +137,8 @@ void Follower::addFlag(const State &S, Value *V, Decision D, unsigned Read,
   Usage.Comparisons.push_back(std::move(C));
 }
 
-/// True where \p I is what `&&` or `||` makes of its last operand \p U: all
-/// other ways to it are decided already.
+/// True if \p I is the value that `&&` or `||` computes from its last operand
+/// \p U: all other paths to it are already decided.
 static bool isShortCircuit(const Instruction &I, const Use &U) {
   const auto *Phi = dyn_cast<PHINode>(&I);
   return Phi && Phi->getType()->isIntegerTy(1) &&
@@ -122,8 +147,8 @@ static bool isShortCircuit(const Instruction &I, const Use &U) {
                 [&](const Use &In) { return &In == &U || isa<Constant>(In); });
 }
 
-/// True where \p Compare only asks whether an operand is not zero, as C++ does
-/// where a number stands as a condition.
+/// True if \p Compare only asks whether an operand is not zero, as C++ does if
+/// a number is used as a condition.
 static bool asksForNonZero(const CmpInst &Compare, unsigned Operand) {
   const auto *Zero = dyn_cast<Constant>(Compare.getOperand(1 - Operand));
   return Zero && Zero->isZeroValue() &&
@@ -153,7 +178,7 @@ void Follower::addComparison(const State &S, CmpInst &Compare, unsigned Operand,
   Usage.Comparisons.push_back(std::move(C));
 }
 
-/// The value itself decides \p Predicate.
+/// Adds \p Predicate, which the value itself decides.
 void Follower::addDecision(const State &S, Instruction &Predicate,
                            unsigned Read) {
   if (S.How.kind() == Transform::None || isa<SwitchInst>(Predicate))
@@ -161,8 +186,8 @@ void Follower::addDecision(const State &S, Instruction &Predicate,
             /*IsOperand=*/S.Origin != nullptr);
 }
 
-/// Of a merged value that was followed from another of its origins already
-/// only what it decides is asked.
+/// For a merged value that was already followed from another of its origins,
+/// only what it decides is added.
 void Follower::followUseOfMerged(const State &S, Use &U, unsigned Read) {
   auto *I = dyn_cast<Instruction>(U.getUser());
   if (!I || S.In)
@@ -224,7 +249,7 @@ void Follower::followUse(const State &S, Use &U, unsigned Read) {
     stopAt(ValueEnd::Mixed, I);
 }
 
-/// True for the types whose values are compared as numbers.
+/// True for types whose values are compared as numbers.
 static bool isNumber(StringRef Type) {
   static constexpr StringRef Numbers[] = {
       "bool",  "char",           "signed char", "unsigned char",
@@ -234,7 +259,7 @@ static bool isNumber(StringRef Type) {
   return is_contained(Numbers, Type);
 }
 
-/// Text is followed as an object: what is called with it compares or copies it.
+/// Follows text as an object: the calls that get it compare or copy it.
 void Follower::followText(unsigned N) {
   const ParameterRead &Read = Reads[N];
   const Value *Object = Read.Target;

@@ -1,12 +1,12 @@
 //===- ParamUsageFinder.h - Where a parameter's value is compared ---------===//
 //
-// Thesis A.11: forward from each parameter read, through copies, casts,
+// Thesis A.11: follows each parameter read forward, through copies, casts,
 // variables, arguments and results, to the comparisons, and from those to the
-// predicates. A value that went through arithmetic with constants is kept, with
-// the arithmetic; one that meets another variable is lost, and counted.
+// predicates. Arithmetic with constants is recorded with the value. A value
+// that is combined with another variable is lost, and counted.
 //
-// Calls are matched on the way forward: a value that went into a function by
-// one call comes out by that call.
+// Calls are matched: a value that entered a function by one call leaves it by
+// the same call.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_PARAMUSAGEFINDER_H
@@ -20,61 +20,66 @@
 
 namespace tpc {
 
-/// True where \p Compare asks how its operands compare. `isunordered(a, b)`
-/// asks whether they are numbers, and `fcmp true` asks nothing.
+/// The operator of the source for \p P; empty if \p P does not compare values:
+/// `isunordered(a, b)` asks whether they are numbers, and `fcmp true` asks
+/// nothing.
+llvm::StringRef relationOf(llvm::CmpInst::Predicate P);
+
+/// True if \p Compare compares the values of its operands.
 bool comparesValues(const llvm::CmpInst &Compare);
 
-/// One step of a value's way forward.
+/// One step of the path of a value.
 struct Hop {
-  llvm::Value *To; ///< what holds the value now
-  llvm::Instruction
-      *Via;      ///< what brought it there; To itself where it computes
-  unsigned From; ///< number of the hop before; None for a read
+  llvm::Value *To;        ///< what holds the value now
+  llvm::Instruction *Via; ///< what passed it on; To itself if it computes
+  unsigned From;          ///< number of the previous hop; None for a read
   static constexpr unsigned None = ~0U;
 };
 
-/// A predicate that an outcome decides, and whether the outcome comes to it
-/// inside its function by SSA values that control flow does not merge.
+/// A predicate that an outcome decides, and whether the outcome reaches it
+/// inside one function by SSA values that no phi merges.
 struct Decision {
   llvm::Instruction *Predicate;
   bool Direct;
   unsigned Way = Hop::None; ///< number of the hop that ends at the predicate
 };
 
-/// A place behind which a parameter's value, or the outcome of a comparison
-/// with it, is not followed, or not surely.
+/// A place behind which the value of a parameter, or the outcome of a
+/// comparison with it, is not followed, or not with certainty.
 struct ValueEnd {
   enum KindTy {
-    Mixed,          ///< it met another variable, or went where nobody looks
-    NoNumber,       ///< the parameter is of a type that is not followed
-    Unread,         ///< it was stored, and nothing loads it
-    UnknownPointer, ///< it was stored where nobody knows
+    Mixed,    ///< it was combined with another variable, or went where nobody
+              ///< looks
+    NoNumber, ///< the type of the parameter is not followed
+    Unread,   ///< it was stored, and nothing loads it
+    UnknownPointer, ///< it was stored to an unknown place
     ManyTargets,    ///< it was stored to one of very many variables
-    Outcome,        ///< its comparison's outcome went where nobody looks
+    Outcome,        ///< the outcome of its comparison went where nobody looks
   };
   KindTy Kind;
   unsigned Read; ///< number of the read
   llvm::Instruction *At;
 };
 
-/// One comparison with one parameter read's value.
+/// One comparison with the value of one parameter read.
 struct ParameterComparison {
   unsigned Read; ///< number of the read
   /// The comparison; null for a flag.
   llvm::CmpInst *Compare = nullptr;
-  unsigned Operand = 0; ///< which operand is the parameter's value
-  /// For a flag (or a switch) the value that decides, and whether it does so
-  /// where it is read, as an operand of `&&` or `||` whose outcome goes on.
+  unsigned Operand = 0; ///< which operand is the value of the parameter
+  /// For a flag (or a switch), the value that decides, and whether it decides
+  /// where it is read, as an operand of `&&` or `||` whose outcome is used
+  /// further.
   llvm::Value *Flag = nullptr;
   bool IsOperand = false;
-  /// For a comparison of text, which Flag is the outcome of, its operator.
+  /// For a comparison of text, whose outcome is Flag: its operator.
   llvm::StringRef TextRelation;
   /// The value came by an argument, and the function has other calls.
   bool ByArgument = false;
   Transform How;
   llvm::SmallVector<Decision, 2> Decisions;
 
-  /// Where it stands in the source.
+  /// The instruction at its place in the source.
   const llvm::Instruction &place() const {
     if (Compare)
       return *Compare;
@@ -89,9 +94,9 @@ struct ParameterUsage {
   std::vector<Hop> Hops;
   std::vector<ValueEnd> Ends;
 
-  /// Places where a value was mixed with another variable.
+  /// Places where a value was combined with another variable.
   unsigned lost() const;
-  /// The way from the read to the hop number \p Last.
+  /// The path from the read to the hop \p Last.
   llvm::SmallVector<Hop, 16> pathTo(unsigned Last) const;
 };
 

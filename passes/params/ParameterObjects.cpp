@@ -18,17 +18,17 @@ using namespace llvm;
 namespace tpc {
 
 //===----------------------------------------------------------------------===//
-// Objects of which a method gives the value
+// Objects with a method that returns the value
 //===----------------------------------------------------------------------===//
 
-/// An object that a read made: the pointers to it, and where it is kept.
+/// An object that a read made: the pointers to it, and where it is stored.
 struct MadeObject {
   unsigned Read;
   SmallPtrSet<const Value *, 2> Pointers;
   Locations Where;
 };
 
-/// The object that \p Read gives; null where it gives the value itself.
+/// The object that \p Read returns; null if it returns the value itself.
 static Value *objectOf(const ParameterRead &Read,
                        const StringSet<> &ObjectClasses) {
   if (Read.Target)
@@ -40,8 +40,8 @@ static Value *objectOf(const ParameterRead &Read,
   return Read.Call->getType()->isPointerTy() ? Read.Call : nullptr;
 }
 
-/// \p Made and the objects that it is copied to: a call that is handed another
-/// object and it, and no more, is an assignment or a copying constructor.
+/// \p Made and the objects that it is copied to: a call whose only arguments
+/// are it and another object is an assignment or a copy constructor.
 static MadeObject madeBy(unsigned Read, Value *Made, PointsTo &Pointers) {
   MadeObject O{Read, {}, Pointers.resolve(Made, false)};
   O.Pointers.insert(Made->stripPointerCasts());
@@ -58,8 +58,8 @@ static MadeObject madeBy(unsigned Read, Value *Made, PointsTo &Pointers) {
   return O;
 }
 
-/// The values that \p Call, an accessor, gives: its result, or what is read by
-/// the reference that it returns.
+/// The values that \p Call, an accessor, returns: its result, or the loads
+/// through the reference that it returns.
 static SmallVector<Value *, 1> valuesOf(CallBase &Call) {
   if (!Call.getType()->isPointerTy())
     return {&Call};
@@ -95,7 +95,7 @@ void findAccessors(Module &M, ModuleAnalysisManager &AM,
     }
   for (auto [Call, Row] : Accessors) {
     const Value *Object = objectOf(*Call, *Row);
-    // An accessor can give an object that has accessors again.
+    // An accessor can return an object that has accessors too.
     while (const auto *Outer = dyn_cast_or_null<CallBase>(Object)) {
       const Rule *OuterRow = Rules.match(*Outer);
       if (!OuterRow || OuterRow->Kind != Rule::Accessor)
@@ -127,7 +127,7 @@ void findAccessors(Module &M, ModuleAnalysisManager &AM,
 }
 
 //===----------------------------------------------------------------------===//
-// Classes of which each field is a parameter
+// Classes whose fields are all parameters
 //===----------------------------------------------------------------------===//
 
 /// The name of \p Class with its scopes.
@@ -139,8 +139,7 @@ static std::string nameWithScopes(const DICompositeType &Class) {
   return Name;
 }
 
-/// A field of a class: what it is called, its type, its default, and where it
-/// is read.
+/// A field of a class: its name, its type, its default, and where it is read.
 struct Field {
   std::string Name, Type;
   json::Value Default = nullptr;
@@ -148,7 +147,7 @@ struct Field {
 };
 
 /// Gives \p Fields of the class \p Name the defaults that the generated code
-/// sets: constants that go to a field of a variable `__default__`.
+/// sets: constants that are stored to a field of a variable `__default__`.
 static void findDefaults(Module &M, StringRef Name, ModuleAnalysisManager &AM,
                          std::map<unsigned, Field> &Fields) {
   const LocationTypes &Types = AM.getResult<LocationTypesAnalysis>(M);
@@ -173,7 +172,7 @@ static void findDefaults(Module &M, StringRef Name, ModuleAnalysisManager &AM,
   }
 }
 
-/// The fields of the class \p Name that the user's code reads, by position.
+/// The fields of the class \p Name that user code reads, by position.
 static std::map<unsigned, Field> fieldsOf(Module &M, StringRef Name,
                                           ModuleAnalysisManager &AM) {
   const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);

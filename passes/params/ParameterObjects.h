@@ -1,9 +1,9 @@
-//===- ParameterObjects.h - Parameters that come in objects ---------------===//
+//===- ParameterObjects.h - Parameters inside of objects ------------------===//
 //
-// Two ways in which a value is not in a variable at once: a read gives an
-// object of which a method gives the value (rclcpp::Parameter::as_double), and
-// a class of which each field is a parameter comes into a callback
-// (dynamic_reconfigure). Which, the tables say.
+// Two APIs do not put the value into a variable directly: a read may return an
+// object with a method that returns the value (rclcpp::Parameter::as_double),
+// and a callback may get a class whose fields are all parameters
+// (dynamic_reconfigure). The rules list both.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_PARAMETEROBJECTS_H
@@ -13,14 +13,14 @@
 
 namespace tpc {
 
-/// Gives each read of \p Reads that makes an object the values that are taken
-/// out of it. What is taken out of an object that no read made becomes a read
-/// of its own, whose name is not known.
+/// Adds to each read of \p Reads that makes an object the values that are taken
+/// out of it. A value taken out of an object that no read made becomes a read
+/// of its own, with an unknown name.
 void findAccessors(llvm::Module &M, llvm::ModuleAnalysisManager &AM,
                    std::vector<ParameterRead> &Reads);
 
-/// Adds to \p Reads the fields of the classes that are handed to callbacks, as
-/// far as the user's code reads them.
+/// Adds to \p Reads the fields of the classes that callbacks get, if user code
+/// reads them.
 void findConfigs(llvm::Module &M, llvm::ModuleAnalysisManager &AM,
                  std::vector<ParameterRead> &Reads);
 

@@ -10,21 +10,21 @@ using namespace llvm::PatternMatch;
 
 namespace tpc {
 
-/// The number is in \p In of a value of \p Width bits.
+/// The number is in the bits \p In of a value of \p Width bits.
 static Repacked at(Bits In, unsigned Width) {
   if (In.Low == 0 && In.Size == Width)
     return {Repacked::Whole};
   return {Repacked::Part, In};
 }
 
-/// True where \p V is only put together with other numbers.
+/// True if \p V is only combined with other numbers.
 static bool isOnlyJoined(const Value &V) {
   return !V.use_empty() && all_of(V.users(), [](const User *U) {
     return match(U, m_Or(m_Value(), m_Value()));
   });
 }
 
-/// True where \p V is only moved to its place beside other numbers.
+/// True if \p V is only moved to its place beside other numbers.
 static bool isOnlyPlaced(const Value &V) {
   return !V.use_empty() && all_of(V.users(), [](const User *U) {
     return match(U, m_Or(m_Value(), m_Value())) ||
@@ -36,14 +36,14 @@ static KnownBits bitsOf(const Value *V, const Instruction &At) {
   return computeKnownBits(V, At.getModule()->getDataLayout());
 }
 
-/// The mask that \p I, an `and`, applies; null where that is not constant.
+/// The mask that \p I, an `and`, applies; null if it is not constant.
 static const APInt *maskOf(const Instruction &I) {
   const APInt *Mask;
   return match(&I, m_And(m_Value(), m_APInt(Mask))) ? Mask : nullptr;
 }
 
-/// The number itself goes into \p I, which puts it into a place of its own: as
-/// it is, into the low bits, or behind others.
+/// The number itself is an operand of \p I, which puts it into place:
+/// unchanged, into the low bits, or above others.
 static Repacked place(const Instruction &I, const Use &U) {
   const Value *V = U.get();
   unsigned Width = V->getType()->getIntegerBitWidth();
@@ -52,7 +52,7 @@ static Repacked place(const Instruction &I, const Use &U) {
     const APInt *Mask = maskOf(I);
     if (!Mask || Width == 1)
       return {Repacked::None};
-    // All that the number can be, or as much as its place can hold.
+    // All bits that the number can have, or all that its place can hold.
     bool IsField = Mask->isMask() && isOnlyPlaced(I);
     return {IsField || (~bitsOf(V, I).Zero).isSubsetOf(*Mask) ? Repacked::Whole
                                                               : Repacked::None};
@@ -60,7 +60,7 @@ static Repacked place(const Instruction &I, const Use &U) {
   case Instruction::Or: {
     KnownBits Own = bitsOf(V, I),
               Other = bitsOf(I.getOperand(1 - U.getOperandNo()), I);
-    // A constant flag is the program's own arithmetic.
+    // A constant flag is arithmetic of the program itself.
     if (Width == 1 || Other.isConstant() || !(~Own.Zero).isSubsetOf(Other.Zero))
       return {Other.isZero() ? Repacked::Whole : Repacked::None};
     return at({0, Own.countMaxActiveBits()}, Width);
@@ -79,7 +79,7 @@ static Repacked place(const Instruction &I, const Use &U) {
   }
 }
 
-/// What the shift \p I makes of the number in \p In.
+/// What the shift \p I does to the number in \p In.
 static Repacked shift(const Instruction &I, Bits In, unsigned Width) {
   const auto *By = dyn_cast<ConstantInt>(I.getOperand(1));
   if (!By || By->getValue().uge(Width))
@@ -95,7 +95,7 @@ static Repacked shift(const Instruction &I, Bits In, unsigned Width) {
     return {Repacked::Gone};
   if (In.Low < N)
     return {Repacked::None};
-  // What stood at the top is now all there is.
+  // The number that was in the top bits is now the whole value.
   if (In.Low == N && In.Low + In.Size == Width)
     return {Repacked::Whole};
   return at({In.Low - N, In.Size}, Width);
@@ -115,7 +115,7 @@ static Repacked mask(const Instruction &I, Bits In, unsigned Width) {
                                      : Repacked{Repacked::Part, In};
 }
 
-/// The number in \p In of the user's integer operand \p U.
+/// What the user of \p U does to the number in the bits \p In of an integer.
 static Repacked take(const Instruction &I, const Use &U, Bits In) {
   unsigned Width = U->getType()->getIntegerBitWidth();
   switch (I.getOpcode()) {
@@ -136,7 +136,7 @@ static Repacked take(const Instruction &I, const Use &U, Bits In) {
     unsigned To = I.getType()->getIntegerBitWidth();
     if (In.Low >= To)
       return {Repacked::Gone};
-    // A truth value is one bit, and a byte in memory.
+    // A truth value is one bit, but a byte in memory.
     if (In.Low == 0 && To == 1)
       return {Repacked::Whole};
     return In.Low + In.Size <= To ? at(In, To) : Repacked{Repacked::None};
@@ -151,8 +151,8 @@ static Repacked take(const Instruction &I, const Use &U, Bits In) {
   }
 }
 
-/// Where the part of a struct or vector is that \p I puts in or takes out; none
-/// where that is not constant, or a part of a part.
+/// The bits of the element of a struct or vector that \p I inserts or extracts;
+/// none if the index is not constant, or names an element of an element.
 static std::optional<Bits> partOf(const Instruction &I) {
   const DataLayout &Layout = I.getModule()->getDataLayout();
   const auto *Insert = dyn_cast<InsertValueInst>(&I);

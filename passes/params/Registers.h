@@ -1,8 +1,8 @@
 //===- Registers.h - Numbers that share a register ------------------------===//
 //
-// A small object is handed over and returned as one number or as a pair, and
-// bit fields share their word. Which bits of a value the number is that is
-// followed, and what shifts, masks and casts make of that.
+// A small object is passed and returned as one number or as a pair, and bit
+// fields share a word. This file tracks which bits of a value hold the followed
+// number through shifts, masks and casts.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_REGISTERS_H
@@ -19,20 +19,20 @@ struct Bits {
   unsigned Low, Size;
 };
 
-/// What an instruction makes of a number in a register.
+/// What an instruction does to a number in a register.
 struct Repacked {
   enum KindTy {
-    None,  ///< it is not such an instruction, or the number is not kept
-    Gone,  ///< the number is not in what it gives
-    Whole, ///< what it gives is the number
-    Part,  ///< the number is in some bits of what it gives
+    None,  ///< it is not such an instruction, or the number is not preserved
+    Gone,  ///< the number is not in the result
+    Whole, ///< the result is the number
+    Part,  ///< the number is in some bits of the result
   };
   KindTy Kind;
-  Bits In = {0, 0}; ///< of Part
+  Bits In = {0, 0}; ///< for Part
 };
 
-/// What the user of \p U makes of it, of which \p In, or else all of it, is the
-/// number.
+/// What the user of \p U does to it. The number is in the bits \p In or,
+/// without \p In, is all of it.
 Repacked repack(const llvm::Use &U, std::optional<Bits> In);
 
 } // namespace tpc

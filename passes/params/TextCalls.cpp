@@ -10,14 +10,13 @@ using namespace llvm;
 
 namespace tpc {
 
-/// Names of ROS are shorter. A loop that appends to a text would make one
-/// without end.
+/// Names in ROS are shorter. A loop that appends to a text would make it ever
+/// longer.
 static cl::opt<unsigned>
     MaxLength("tpc-max-name-length", cl::Hidden, cl::init(256),
               cl::desc("Characters of a name of a parameter or topic"));
 
-/// \p A and \p B in one; what is not known on both sides of the seam is one
-/// unknown part.
+/// \p A followed by \p B; unknown parts on both sides of the seam become one.
 static std::string concatenated(StringRef A, StringRef B) {
   if (A.ends_with(DynamicName))
     B.consume_front(DynamicName);
@@ -54,8 +53,8 @@ const Texts::Callee &Texts::calleeOf(const Function &F) {
   return *C;
 }
 
-/// The number of the written argument that \p N of \p Call is; none for `this`
-/// and the place of the result.
+/// The argument of \p Call, as written in the source, whose operand is \p N;
+/// none for `this` and for the place of the result.
 static std::optional<unsigned> writtenNumber(const CallBase &Call, unsigned N,
                                              size_t Written) {
   size_t Hidden = Call.arg_size() - std::min<size_t>(Call.arg_size(), Written);
@@ -78,7 +77,7 @@ Texts::Kind Texts::kindOf(const CallBase &Call, const Use &Argument) {
                                                         : Kind::Handle;
 }
 
-/// The text of argument \p N of \p Call, a string, characters or a character.
+/// The text of argument \p N of \p Call: a string, a char array or a char.
 Texts::Known Texts::piece(const CallBase &Call, unsigned N) {
   const Value *V = Call.getArgOperand(N);
   if (V->getType()->isPointerTy())
@@ -110,8 +109,7 @@ Texts::Known Texts::joined(const CallBase &Call, const Rule &Row) {
   return All;
 }
 
-/// What \p Method of std::string does to its object; none where that is not
-/// known.
+/// What \p Method of std::string does to its object; none if that is not known.
 std::optional<Texts::Effect> Texts::ofString(const CallBase &Call,
                                              StringRef Method) {
   const Callee &C = calleeOf(*Call.getCalledFunction());
@@ -151,8 +149,8 @@ std::optional<Texts::Effect> Texts::ofString(const CallBase &Call,
   return std::nullopt;
 }
 
-/// What \p Call does to the object that it gets as operand \p N; none where
-/// that is not known.
+/// What \p Call does to the object that it gets as operand \p N; none if that
+/// is not known.
 std::optional<Texts::Effect> Texts::effect(const CallBase &Call, unsigned N,
                                            Kind K) {
   const Function *F = Call.getCalledFunction();
@@ -193,7 +191,7 @@ std::optional<Texts::Effect> Texts::effect(const CallBase &Call, unsigned N,
     return Effect{Effect::Sets, returned(Call, K)};
   if (Made)
     return Effect{Effect::Sets, unknown(K)};
-  // A global is handed over to be destroyed at the end.
+  // A global is passed to a function that destroys it at exit.
   if (K == Kind::Handle || Call.onlyReadsMemory(N) ||
       F->getName() == "__cxa_atexit" ||
       (Written ? C.Constant[*Written] : C.ConstMethod))

@@ -1,6 +1,8 @@
 //===- TextUsage.cpp ------------------------------------------------------===//
 #include "params/TextUsage.h"
 
+#include "params/ParamUsageFinder.h"
+
 #include "llvm/IR/Module.h"
 #include "llvm/Support/CommandLine.h"
 
@@ -13,7 +15,7 @@ bool isText(StringRef Type) {
          Type.starts_with("std::__cxx11::basic_string<char,");
 }
 
-/// Each object is compared with all operands of text in the unit.
+/// Each object is compared with all text operands in the link unit.
 static cl::opt<unsigned>
     MaxObjects("tpc-max-text-copies", cl::Hidden, cl::init(16),
                cl::desc("Objects that one text is copied to"));
@@ -48,32 +50,18 @@ SmallVector<CallBase *, 2> TextUsage::numbersFrom(const CallBase &Into,
   return Found;
 }
 
-/// The operator of \p Compare, a comparison of what string::compare() gives
-/// with zero; empty where it is anything else.
+/// The operator of \p Compare, if it compares the result of string::compare()
+/// with zero; otherwise empty.
 static StringRef relationToZero(const CmpInst &Compare, const Value *Result) {
   const auto *Zero = dyn_cast<ConstantInt>(Compare.getOperand(1));
-  if (Compare.getOperand(0) != Result || !Zero || !Zero->isZero())
+  if (Compare.getOperand(0) != Result || !Zero || !Zero->isZero() ||
+      Compare.isUnsigned())
     return "";
-  switch (Compare.getPredicate()) {
-  case CmpInst::ICMP_EQ:
-    return "==";
-  case CmpInst::ICMP_NE:
-    return "!=";
-  case CmpInst::ICMP_SLT:
-    return "<";
-  case CmpInst::ICMP_SLE:
-    return "<=";
-  case CmpInst::ICMP_SGT:
-    return ">";
-  case CmpInst::ICMP_SGE:
-    return ">=";
-  default:
-    return "";
-  }
+  return relationOf(Compare.getPredicate());
 }
 
-/// `<` for `>`, where the threshold stands on the left.
-static StringRef turned(StringRef Relation) {
+/// `<` for `>`, if the threshold is on the left.
+static StringRef swapped(StringRef Relation) {
   if (Relation == "<")
     return ">";
   if (Relation == "<=")
@@ -109,7 +97,7 @@ TextUsage::Found TextUsage::comparisonsOf(const Value *Object) const {
       bool Left = N == 0 && U.Call->arg_size() > 1;
       if (Relation != "compare") {
         Out.Comparisons.push_back(
-            {U.Call, Left ? turned(Relation) : Relation, ByArgument});
+            {U.Call, Left ? swapped(Relation) : Relation, ByArgument});
         continue;
       }
       for (User *V : U.Call->users()) {
@@ -119,7 +107,7 @@ TextUsage::Found TextUsage::comparisonsOf(const Value *Object) const {
           ++Out.Lost;
         else
           Out.Comparisons.push_back(
-              {Compare, Left ? turned(Own) : Own, ByArgument});
+              {Compare, Left ? swapped(Own) : Own, ByArgument});
       }
     }
   }

@@ -1,9 +1,9 @@
 //===- TextUsage.h - Where a string is compared ---------------------------===//
 //
-// A std::string is an object that is never looked into. What is done with one
-// are calls that the tables name (`text` in rules/*.json): comparisons, and
-// copies, which make another object the same text. Likewise an object that
-// holds one number, a ros::Duration: `held`.
+// The inside of a std::string is never analysed. The rules name the calls that
+// use one (`text` in rules/*.json): comparisons, and copies, which give another
+// object the same text. The same holds for an object that holds one number,
+// such as a ros::Duration: `held`.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_TEXTUSAGE_H
@@ -17,7 +17,7 @@ namespace tpc {
 struct TextComparison {
   llvm::Instruction *Outcome; ///< a truth value
   llvm::StringRef Relation;
-  bool ByArgument; ///< the string came by an argument of the function
+  bool ByArgument; ///< the string is an argument of the function
 };
 
 class TextUsage {
@@ -26,13 +26,13 @@ public:
 
   struct Found {
     llvm::SmallVector<TextComparison, 4> Comparisons;
-    unsigned Lost = 0; ///< comparisons whose result is used otherwise
+    unsigned Lost = 0; ///< comparisons whose result is used in other ways
   };
-  /// The comparisons of what is in the string at \p Object, or copied from it.
+  /// The comparisons of the string at \p Object, or of copies of it.
   Found comparisonsOf(const llvm::Value *Object) const;
 
-  /// The calls that take the number out again that \p Into, a call that a row
-  /// of `held` describes, puts into an object.
+  /// The calls that take the number out of the object again into which \p Into,
+  /// a call that a row of `held` describes, puts it.
   llvm::SmallVector<llvm::CallBase *, 2> numbersFrom(const llvm::CallBase &Into,
                                                      const Rule &Row) const;
 
@@ -47,7 +47,7 @@ private:
   std::vector<std::pair<llvm::CallBase *, Locations>> Numbers;
 };
 
-/// True for the type of a parameter that is text.
+/// True if \p Type, the type of a parameter, is text.
 bool isText(llvm::StringRef Type);
 
 } // namespace tpc

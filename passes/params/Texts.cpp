@@ -1,4 +1,4 @@
-//===- Texts.cpp - The way back to what makes a name ----------------------===//
+//===- Texts.cpp - Follows a name back to its origin ----------------------===//
 #include "params/Texts.h"
 
 #include "support/Names.h"
@@ -15,11 +15,11 @@ using namespace llvm;
 
 namespace tpc {
 
-/// The search recurses; its stack is the linker's.
+/// The search is recursive, on the stack of the linker.
 static cl::opt<unsigned>
     MaxDepth("tpc-max-text-depth", cl::Hidden, cl::init(64),
              cl::desc("Objects in a row that a text is followed through"));
-/// Ways through calls and merges multiply.
+/// Paths through calls and merges multiply.
 static cl::opt<unsigned>
     MaxSteps("tpc-max-text-steps", cl::Hidden, cl::init(5000),
              cl::desc("Objects in all that one text is followed through"));
@@ -29,8 +29,8 @@ static cl::opt<unsigned> MaxBlocks(
     "tpc-max-text-blocks", cl::Hidden, cl::init(2000),
     cl::desc("Basic blocks of a function in which a text is followed"));
 
-/// Adds \p New, by another way, to \p Into: what two ways give differently is
-/// not known.
+/// Adds \p New, found on another path, to \p Into. Where the two differ, the
+/// result is unknown.
 template <typename Known> static void merge(Known &Into, const Known &New) {
   if (New.None)
     return;
@@ -44,8 +44,8 @@ template <typename Known> static void merge(Known &Into, const Known &New) {
     Into.Text = DynamicName;
 }
 
-/// What \p Object, which the function itself makes or gets, holds above \p I
-/// in \p BB; None where nothing on the way sets it.
+/// What \p Object, a local or an argument of the function, holds above \p I in
+/// \p BB; None if nothing on the path sets it.
 Texts::Known Texts::above(const Value *Object, const Instruction *I,
                           const BasicBlock *BB, Kind K, Places &Seen) {
   while (true) {
@@ -70,7 +70,7 @@ Texts::Known Texts::above(const Value *Object, const Instruction *I,
     const BasicBlock *Only = BB->getSinglePredecessor();
     if (!Only)
       break;
-    // A block that is asked for again on a way round a loop adds nothing.
+    // A block that is reached again around a loop adds nothing.
     if (!Seen.try_emplace(Only, Known{"", false, true}).second)
       return Seen[Only];
     BB = Only;
@@ -93,7 +93,7 @@ Texts::Known Texts::local(const Value *Object, const Instruction &At, Kind K) {
   return above(Object, At.getPrevNode(), At.getParent(), K, Seen);
 }
 
-/// What the calls of its function hand over as \p Arg.
+/// What the calls of its function pass as \p Arg.
 Texts::Known Texts::ofArgument(const Argument &Arg, Kind K) {
   auto [It, New] = Arguments.try_emplace(&Arg, Known{"", false, true});
   if (!New)
@@ -102,7 +102,7 @@ Texts::Known Texts::ofArgument(const Argument &Arg, Kind K) {
   Known All{"", false, true};
   bool Differ = false;
   for (const CallBase *Call : Calls.callers(F)) {
-    // A callback's arguments come from elsewhere.
+    // Arguments of a callback come from elsewhere.
     Known One =
         Call->getCalledFunction() == F && Arg.getArgNo() < Call->arg_size()
             ? find(Call->getArgOperand(Arg.getArgNo()), *Call, K)
@@ -147,7 +147,7 @@ Texts::Known Texts::ofResult(const CallBase &Call, Kind K) {
   if (Name.consume_front("std::__cxx11::basic_string::")) {
     if (Name == "c_str" || Name == "data")
       return find(Call.getArgOperand(0), Call, K);
-    // What changes a string returns it.
+    // Methods that change a string return it.
     std::optional<Effect> E = ofString(Call, Name);
     return E && E->Does == Effect::Sets ? E->To : unknown(K);
   }
@@ -166,8 +166,8 @@ Texts::Known Texts::ofResult(const CallBase &Call, Kind K) {
   return All.None ? unknown(K) : All;
 }
 
-/// What everything that writes the member or global \p L gives it. That it was
-/// empty before is not meant.
+/// The combined values of all writes of the member or global \p L. That it was
+/// empty before does not count.
 Texts::Known Texts::ofMember(const Location &L, Kind K) {
   if (auto *It = find_if(Members, [&](auto &M) { return M.first.isSame(L); });
       It != Members.end())
@@ -182,7 +182,7 @@ Texts::Known Texts::ofMember(const Location &L, Kind K) {
       continue;
     bool Entered = !Calls.callees(*Call).empty();
     for (const auto &[N, Arg] : enumerate(Call->args())) {
-      // What a function that is looked into does, its own calls tell.
+      // The calls inside an analysed function show what it does.
       if (!Arg->getType()->isPointerTy() ||
           (Entered && !(N == 0 && Call->hasStructRetAttr())) ||
           none_of(Memory->Pointers.resolve(Arg, false),
@@ -214,7 +214,7 @@ Texts::Known Texts::inMemory(const Value *Pointer, Kind K) {
   return Any ? All : unknown(K);
 }
 
-/// What the pointer that \p Load gives leads to.
+/// What the pointer that \p Load reads leads to.
 Texts::Known Texts::loaded(const LoadInst &Load, Kind K) {
   const DataLayout &Layout = Load.getModule()->getDataLayout();
   if (auto *C = dyn_cast<Constant>(Load.getPointerOperand()))
@@ -278,7 +278,7 @@ Texts::Known Texts::find(const Value *Pointer, const Instruction &At, Kind K) {
 }
 
 //===----------------------------------------------------------------------===//
-// What is asked
+// Queries
 //===----------------------------------------------------------------------===//
 
 Texts::Known Texts::knownAt(const Value *Pointer, const Instruction &At) {
@@ -303,7 +303,7 @@ std::string Texts::nameOf(const CallBase &Call, const Rule &Row) {
 }
 
 const Constant *Texts::constantOf(const Value *V) {
-  // Bounded by the arguments that lead to arguments.
+  // Limited, because an argument may be passed on from an argument.
   for (unsigned N = 0; N < MaxDepth; ++N) {
     if (const auto *Global = dyn_cast<GlobalVariable>(V))
       return Global->isConstant() && Global->hasInitializer()
@@ -317,7 +317,7 @@ const Constant *Texts::constantOf(const Value *V) {
         Wide && Wide->getSrcTy()->isIntegerTy(1))
       Next = Wide->getOperand(0);
     else if (const auto *Arg = dyn_cast<Argument>(V)) {
-      // Where several calls differ, nothing is the default.
+      // If calls pass different values, none is the default.
       for (const CallBase *Call : Calls.callers(Arg->getParent())) {
         if (Call->getCalledFunction() != Arg->getParent() ||
             Arg->getArgNo() >= Call->arg_size() ||
@@ -326,7 +326,8 @@ const Constant *Texts::constantOf(const Value *V) {
         Next = Call->getArgOperand(Arg->getArgNo());
       }
     } else if (isa<AllocaInst>(V)) {
-      // A temporary that one value is stored to, or that is made of one.
+      // A temporary that one value is stored to, or that one value is converted
+      // into.
       for (const User *U : V->users()) {
         const auto *Store = dyn_cast<StoreInst>(U);
         const auto *Call = dyn_cast<CallBase>(U);

@@ -1,10 +1,10 @@
-//===- Texts.h - What a name in the program is ----------------------------===//
+//===- Texts.h - The texts that names are made of -------------------------===//
 //
-// The names of parameters and topics: constants, what is put together of
-// constants in std::strings, and the namespaces of node handles. A text is
-// followed back from where it is used: in the function to the last call that
-// made or changed it, an argument to the calls of its function, a member to
-// all that write it. What cannot be told stands as `<dynamic>` in its place.
+// The names of parameters and topics: constants, std::strings that are composed
+// of constants, and the namespaces of node handles. A text is followed back
+// from its use: inside the function to the last call that made or changed it,
+// from an argument to the calls of its function, from a member to all writes of
+// it. `<dynamic>` stands for a part that is not known.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_TEXTS_H
@@ -17,20 +17,20 @@
 
 namespace tpc {
 
-/// What stands for a part of a name that no constant gives.
+/// Stands for a part of a name that is not constant.
 inline constexpr char DynamicName[] = "<dynamic>";
 
-/// True where a part of \p Name is not known.
+/// True if a part of \p Name is not known.
 inline bool isDynamic(llvm::StringRef Name) {
   return Name.contains(DynamicName);
 }
 
-/// \p Name in the namespace \p In, as ROS joins them.
+/// \p Name in the namespace \p In, joined as ROS does.
 std::string joinNames(llvm::StringRef In, llvm::StringRef Name);
 
 class Texts {
 public:
-  /// What is known of the module's memory.
+  /// What is known about the module's memory.
   struct MemoryView {
     PointsTo &Pointers;
     const AccessIndex &Accesses;
@@ -42,57 +42,58 @@ public:
     }
   };
 
-  /// Without \p Known members are not looked into.
+  /// Without \p Known, members are not followed.
   Texts(const RuleMatches &Rules, const CallGraphResult &Calls,
         std::optional<MemoryView> Known)
       : Rules(Rules), Calls(Calls), Memory(Known) {}
 
-  /// The text of the std::string or the characters that \p Pointer leads to
-  /// where \p At runs.
+  /// The text of the std::string or char array that \p Pointer leads to when
+  /// \p At runs.
   std::string textAt(const llvm::Value *Pointer, const llvm::Instruction &At);
 
-  /// The name that \p Call, which \p Row describes, hands over; behind the
-  /// namespace of its handle where the row says so.
+  /// The name that \p Call, described by \p Row, passes, after the namespace of
+  /// its handle if the row says so.
   std::string nameOf(const llvm::CallBase &Call, const Rule &Row);
 
-  /// The constant that \p V is, also where it is an argument and all calls
-  /// hand over the same, or a temporary that holds it. Null where there is
+  /// The constant that \p V is. Also if \p V is an argument for which all calls
+  /// pass the same constant, or a temporary that holds it. Null if there is
   /// none.
   const llvm::Constant *constantOf(const llvm::Value *V);
 
-  /// The functions whose calls hand them different texts of which a name is
-  /// made: told apart, each call has its own. Callers stand before callees.
+  /// The functions whose calls pass different texts that become part of a name.
+  /// If they are copied for each call, each copy has its own name. Callers come
+  /// before callees.
   llvm::ArrayRef<const llvm::Function *> shared() const {
     return Shared.getArrayRef();
   }
 
 private:
-  /// A text, and whether it would be another for another call. None where it
-  /// is only known to be what is being asked for.
+  /// A text, and whether another call could make it different. None if it is
+  /// only known to be the one that is being searched.
   struct Known {
     std::string Text;
     bool Varies = false;
     bool None = false;
-    /// It is a name that no namespace comes before.
+    /// It is a name without a namespace before it.
     bool Absolute = false;
   };
-  /// What a call does to an object that it is handed.
+  /// What a call does to an object that it gets.
   struct Effect {
     enum DoesTy { Keeps, Clears, Sets } Does;
     Known To = {};
   };
   enum class Kind { Text, Handle };
   using Places = llvm::DenseMap<const llvm::BasicBlock *, Known>;
-  /// What is asked of a callee's name, which is demangled once.
+  /// What is known from the name of a callee, which is demangled once.
   struct Callee {
     std::string Name;
-    llvm::SmallVector<std::string, 4> Types; ///< plain
+    llvm::SmallVector<std::string, 4> Types; ///< as plainType gives them
     llvm::SmallVector<bool, 4> Constant;     ///< by written argument
     bool ConstMethod = false;
   };
 
-  /// What is not known of a text. Of a handle that nobody in the link unit
-  /// makes the namespace is left out: the name is then as in the read.
+  /// An unknown text. If no code in the link unit makes a handle, its namespace
+  /// is left out: the name is then as in the read.
   static Known unknown(Kind K) { return {K == Kind::Text ? DynamicName : ""}; }
   Known knownAt(const llvm::Value *Pointer, const llvm::Instruction &At);
   Known find(const llvm::Value *Pointer, const llvm::Instruction &At, Kind K);
@@ -119,7 +120,7 @@ private:
   std::optional<MemoryView> Memory;
   llvm::SmallSetVector<const llvm::Function *, 8> Shared;
   llvm::DenseMap<const llvm::Function *, std::unique_ptr<Callee>> Callees;
-  /// Members, globals and arguments that are known by now, or being asked for.
+  /// Members, globals and arguments that are known so far, or being searched.
   llvm::SmallVector<std::pair<Location, Known>, 0> Members;
   llvm::DenseMap<const llvm::Argument *, Known> Arguments;
   unsigned Depth = 0, Steps = 0;

@@ -15,7 +15,7 @@ namespace tpc {
 
 std::string shortest(double X) {
   char Buffer[32];
-  auto End = std::to_chars(Buffer, Buffer + sizeof(Buffer), X).ptr;
+  auto *End = std::to_chars(Buffer, Buffer + sizeof(Buffer), X).ptr;
   return std::string(Buffer, End);
 }
 
@@ -53,7 +53,7 @@ void Transform::call(StringRef Op, std::optional<double> Constant, bool First) {
   *this = std::move(Outer);
 }
 
-/// The sign between two operands; empty for a function's name.
+/// The sign between two operands; empty for the name of a function.
 static StringRef signOf(const Application &A) {
   return StringSwitch<StringRef>(A.Op)
       .Case("/", " / ")
@@ -130,7 +130,7 @@ json::Value Transform::tree() const {
 }
 
 //===----------------------------------------------------------------------===//
-// The program's operations
+// Operations of the program
 //===----------------------------------------------------------------------===//
 
 std::optional<double> constantNumber(const Value *V, bool Unsigned) {
@@ -151,8 +151,8 @@ std::optional<double> constantNumber(const Value *V, bool Unsigned) {
   return Value.convertToDouble();
 }
 
-/// Applies `V op C` (or `C op V` where \p Left) to \p T; false where that is
-/// no arithmetic that is kept.
+/// Applies `V op C` (`C op V` with \p Left) to \p T; false if that arithmetic
+/// is not recorded.
 static bool applyConstant(Transform &T, unsigned Opcode, double C, bool Left) {
   switch (Opcode) {
   case Instruction::Add:
@@ -203,8 +203,9 @@ static bool applyConstant(Transform &T, unsigned Opcode, double C, bool Left) {
   }
 }
 
-/// Our name for what \p Call computes from numbers: an intrinsic, or a function
-/// of the C library with the suffix of its type; empty for anything else.
+/// TPC's name for the mathematical function that \p Call calls: an intrinsic,
+/// or a function of the C library with the suffix of its type; empty for all
+/// other calls.
 static StringRef functionOf(const CallBase &Call) {
   const Function *F = Call.getCalledFunction();
   if (!F || !F->isDeclaration())
@@ -260,7 +261,7 @@ static bool takesTwo(StringRef Function) {
          Function == "max";
 }
 
-/// \p T after a call of a mathematical function with \p V.
+/// \p T after \p Call, a call of a mathematical function with \p V.
 static std::optional<Transform> applyCall(Transform T, const CallBase &Call,
                                           const Value *V) {
   StringRef Function = functionOf(Call);
@@ -280,7 +281,7 @@ static std::optional<Transform> applyCall(Transform T, const CallBase &Call,
   return T;
 }
 
-/// \p Sign times the square of \p T, the same whichever factor T is.
+/// \p Sign times the square of \p T, whichever of the two factors T is.
 static void square(Transform &T, int Sign) {
   if (T.Scale < 0)
     T.multiply(-1);
@@ -288,7 +289,7 @@ static void square(Transform &T, int Sign) {
   T.multiply(Sign);
 }
 
-/// \p T after a multiplication and addition in one.
+/// \p T after a fused multiply-add.
 static std::optional<Transform> applyFma(Transform T, const CallBase &Fma,
                                          const Value *V, int Square) {
   const Value *A = Fma.getArgOperand(0), *B = Fma.getArgOperand(1),
@@ -341,8 +342,8 @@ std::optional<Transform> apply(Transform T, const Instruction &I,
   return T;
 }
 
-/// Where the last step of \p T cut to \p Bits, and now it turns out that the
-/// rest is read without a sign.
+/// Corrects \p T if its last step truncated to \p Bits and the result turns out
+/// to be read as unsigned.
 static void readUnsigned(Transform &T, unsigned Bits) {
   if (!T.Inner || T.Scale != 1 || T.Offset != 0 || T.Inner->Op != "wrap" ||
       *T.Inner->Constant != Bits)
@@ -359,7 +360,7 @@ Transform applyCast(Transform T, const CastInst &Cast) {
   unsigned To = Cast.getDestTy()->getScalarSizeInBits();
   switch (Cast.getOpcode()) {
   case Instruction::Trunc:
-    // To one bit: a truth value, which is a byte in memory.
+    // A conversion to one bit makes a truth value, which is a byte in memory.
     if (To > 1 && (!T.Width || T.Width > To)) {
       T.call("wrap", To);
       T.Width = To;

@@ -1,13 +1,13 @@
-//===- Transform.h - Arithmetic that a parameter went through -------------===//
+//===- Transform.h - Arithmetic between a parameter and a comparison ------===//
 //
-// A threshold that was computed from a parameter and constants (type `derived`,
-// docs/reference/glossary.md#derived-comparison). The arithmetic is kept, so
-// that a suggestion can be given in the parameter's own unit: affine steps are
-// folded into a scale and an offset, all others become an expression over x,
-// the parameter.
+// A threshold that is computed from a parameter and constants (type `derived`,
+// docs/reference/glossary.md#derived-comparison). The arithmetic is recorded,
+// so that a suggestion can be given in the unit of the parameter. Affine steps
+// are folded into a scale and an offset; all others become an expression over
+// x, the parameter.
 //
-// Real numbers stand for the program's: rounding, and integers that overflow,
-// are not modelled, but where a conversion itself cuts something off.
+// The arithmetic is that of real numbers: rounding and integer overflow are not
+// modelled, except that a conversion may cut something off.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_TRANSFORM_H
@@ -24,52 +24,52 @@ namespace tpc {
 
 struct Application;
 
-/// What was done to a parameter's value before it was compared:
-/// Scale * inner + Offset, where inner is x or a function of a transform.
+/// The arithmetic between a parameter and a comparison: Scale * inner + Offset,
+/// where inner is x or a function of a transform.
 struct Transform {
   enum KindTy { None, Affine, Expression };
   double Scale = 1, Offset = 0;
   std::shared_ptr<const Application> Inner; ///< null: x itself
-  /// Bits of an integer type that the value is known to fit into; 0: none.
+  /// The bits of an integer type that the value is known to fit into; 0: none.
   unsigned Width = 0;
 
   KindTy kind() const;
   void multiply(double Factor);
   void divide(double Divisor);
   void add(double Term);
-  /// \p Op of what stands so far, with a constant behind it or, with \p First,
-  /// before it.
+  /// Applies \p Op to the transform; a constant is the second operand or, with
+  /// \p First, the first.
   void call(llvm::StringRef Op, std::optional<double> Constant = std::nullopt,
             bool First = false);
   /// For people: `2 * sqrt(x + 1)`.
   std::string text() const;
-  /// True where nothing was done but to keep the value in fewer bits: it is
-  /// meant to fit.
+  /// True if the only steps truncate the value to fewer bits: it is expected to
+  /// fit.
   bool isNarrowing() const;
   /// The same for programs (docs/reference/formats.md): a number, "x", or a
   /// list of an operator and its operands.
   llvm::json::Value tree() const;
 };
 
-/// One function of a transform.
+/// One function applied to a transform.
 struct Application {
   std::string Op; ///< see docs/reference/formats.md
   Transform Of;
   std::optional<double> Constant;
-  bool First; ///< the constant stands before the transform
+  bool First; ///< the constant is the first operand
 };
 
-/// \p T after \p I, an operation on \p V other than a cast; none where \p I is
-/// no arithmetic with constants alone, nor a product of V with itself: then
-/// \p Square is 1, or -1 where one of the two is negated, else 0.
+/// \p T after \p I, an operation on \p V other than a cast; none unless \p I is
+/// arithmetic with constants alone. If it multiplies V with itself, \p Square
+/// is 1, or -1 if one factor is negated; otherwise 0.
 std::optional<Transform> apply(Transform T, const llvm::Instruction &I,
                                const llvm::Value *V, int Square);
 
-/// \p T after \p Cast, which can change the value where the new type is
-/// narrower, or holds whole numbers.
+/// \p T after \p Cast, which can change the value if the new type is narrower,
+/// or holds integers.
 Transform applyCast(Transform T, const llvm::CastInst &Cast);
 
-/// The value of \p V where it is a constant number or a conversion of one.
+/// The value of \p V if it is a constant number or a conversion of one.
 std::optional<double> constantNumber(const llvm::Value *V,
                                      bool Unsigned = false);
 

@@ -20,7 +20,7 @@ StringRef BlindSpot::kindName() const {
 static std::string whyLost(const Instruction &I) {
   const auto *Call = dyn_cast<CallBase>(&I);
   if (Call && !isMultiplyAdd(I))
-    return "handed to " + Wording::callee(*Call) + ", which is not looked into";
+    return "handed to " + Wording::callee(*Call) + ", which is not analysed";
   if (Call || isa<BinaryOperator>(I))
     return "mixed with another variable";
   if (isa<GetElementPtrInst>(I))
@@ -74,7 +74,7 @@ std::string BlindSpot::text(const ParamCallFinder::Result &Reads,
   case LostOutcome:
     return whyLost(*At);
   case UnknownPointer:
-    return "stored through a pointer to nowhere known";
+    return "stored through a pointer to an unknown place";
   case ManyTargets:
     return "stored to one of very many variables";
   case Unread: {
@@ -85,7 +85,7 @@ std::string BlindSpot::text(const ParamCallFinder::Result &Reads,
            ", and nothing here reads it";
   }
   case DynamicName:
-    return "reads a parameter whose name is put together";
+    return "reads a parameter whose name is not constant";
   case OutsideSources:
     return "compared in code that is not yours";
   case WithoutDebugInfo:
@@ -96,8 +96,9 @@ std::string BlindSpot::text(const ParamCallFinder::Result &Reads,
   llvm_unreachable("no such kind");
 }
 
-/// Library code calls through pointers of its own all the time; what the user
-/// has it call goes through an `operator()`, and is where the user calls that.
+/// Library code often calls through its own pointers. A call of user code by a
+/// library goes through an `operator()`, and is listed where the user calls
+/// that.
 static void addIndirectCalls(const CallGraphResult &Calls, Wording &Words,
                              std::vector<BlindSpot> &Out) {
   auto Add = [&](const CallBase *Call) {

@@ -1,8 +1,8 @@
-//===- BlindSpots.h - Where the analysis does not see on ------------------===//
+//===- BlindSpots.h - Places that the analysis cannot resolve -------------===//
 //
-// What could not be resolved, place by place: the reader of a result should
-// know what it does not say. One list; a new kind is a name in BlindSpot and
-// the places where it occurs.
+// Lists every place that could not be resolved: the reader of a result must
+// know what it does not cover. There is one list. A new kind is a name in
+// BlindSpot and the places where it occurs.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_BLINDSPOTS_H
@@ -16,27 +16,29 @@
 namespace tpc {
 
 struct BlindSpot {
-  /// In the order in which they are listed: where there are very many, the
-  /// last ones are only counted.
+  /// In the order of the list: if there are very many, the last ones are only
+  /// counted.
   enum KindTy {
-    LostValue,        ///< a parameter's value is not followed on
-    LostOutcome,      ///< the outcome of a comparison with it is not
-    UnknownPointer,   ///< a value goes through a pointer to nowhere known
+    LostValue,        ///< the value of a parameter is not followed further
+    LostOutcome,      ///< the outcome of a comparison with it is not followed
+                      ///< further
+    UnknownPointer,   ///< a value goes through a pointer to an unknown place
     ManyTargets,      ///< a value goes to one of very many variables
     Unread,           ///< a value is stored, and nothing here loads it
     DynamicName,      ///< a parameter's name is not constant
-    OutsideSources,   ///< a comparison in code that is not the user's
-    WithoutDebugInfo, ///< a comparison that has no place in a source
-    IndirectCall,     ///< a call whose function is not known
+    OutsideSources,   ///< a comparison in code that is not user code
+    WithoutDebugInfo, ///< a comparison that has no place in the source
+    IndirectCall,     ///< a call whose target is not known
   };
   KindTy Kind;
   const llvm::Instruction *At;
   static constexpr unsigned None = ~0U;
-  unsigned Read = None;    ///< number of the read; None where it is about none
-  bool IsNoNumber = false; ///< a lost value, for it is of no type of numbers
+  unsigned Read =
+      None; ///< number of the read; None if the blind spot is not about a read
+  bool IsNoNumber = false; ///< a lost value: its type is not a number
 
   llvm::StringRef kindName() const;
-  /// What it is, in a few words.
+  /// A short description.
   std::string text(const ParamCallFinder::Result &Reads,
                    const Wording &Words) const;
 };

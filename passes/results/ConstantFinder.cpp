@@ -13,7 +13,7 @@ using namespace llvm;
 
 namespace tpc {
 
-/// True where \p V is a truth value, be it as an integer.
+/// True if \p V is a truth value, also one stored as an integer.
 static bool isTruth(const Value *V) {
   for (unsigned Steps = 0; Steps < 8; ++Steps) {
     if (V->getType()->isIntegerTy(1))
@@ -23,7 +23,7 @@ static bool isTruth(const Value *V) {
     if (!I || !(isa<ZExtInst>(I) || I->isBitwiseLogicOp() ||
                 (Expect && Expect->getIntrinsicID() == Intrinsic::expect)))
       return false;
-    // Of two operands one can be a constant mask; there may be but one.
+    // One of the two operands may be a constant mask, but not both.
     bool Second = I->isBitwiseLogicOp() && isa<Constant>(I->getOperand(0));
     V = I->getOperand(Second ? 1 : 0);
   }
@@ -37,7 +37,7 @@ static const Value *unconverted(const Value *V) {
   return V;
 }
 
-/// The constant global that \p Load reads; null where it reads something else.
+/// The constant global that \p Load reads; null if it reads something else.
 static const GlobalVariable *constantGlobal(const LoadInst &Load) {
   const auto *Global = dyn_cast<GlobalVariable>(Load.getPointerOperand());
   return Global && Global->isConstant() && Global->hasDefinitiveInitializer()
@@ -45,7 +45,7 @@ static const GlobalVariable *constantGlobal(const LoadInst &Load) {
              : nullptr;
 }
 
-/// The number that \p V is as it stands, or that a constant global holds.
+/// The number that \p V is, or that a constant global holds.
 static const Constant *plainNumber(const Value *V) {
   V = unconverted(V);
   if (const auto *Load = dyn_cast<LoadInst>(V))
@@ -55,7 +55,8 @@ static const Constant *plainNumber(const Value *V) {
                                                    : nullptr;
 }
 
-/// The number that whatever \p Call enters returns; null where there is none.
+/// The number that every function that \p Call can enter returns; null if there
+/// is none.
 const Constant *ConstantFinder::returnedBy(const CallBase &Call) const {
   const Constant *Only = nullptr;
   for (const Function *Callee : Calls.callees(Call))
@@ -70,8 +71,8 @@ const Constant *ConstantFinder::returnedBy(const CallBase &Call) const {
   return Only;
 }
 
-/// The number that \p Load reads where that is a const member, which all
-/// constructors make the same; null elsewhere.
+/// The number that \p Load reads if it reads a const member to which all
+/// constructors give the same value; otherwise null.
 const Constant *ConstantFinder::ofConstMember(const LoadInst &Load) const {
   Locations Where = Pointers.touched(Load);
   if (Where.empty() || !all_of(Where, [&](const Location &L) {
@@ -90,8 +91,8 @@ const Constant *ConstantFinder::ofConstMember(const LoadInst &Load) const {
   return Only;
 }
 
-/// The number that \p V is: a constant, what is in a constant global or member,
-/// or what a function always returns.
+/// The number that \p V is: a constant, the value of a constant global or
+/// member, or what a function always returns.
 const Constant *ConstantFinder::numberOf(const Value *V) const {
   if (const Constant *C = plainNumber(V))
     return C;
@@ -102,7 +103,7 @@ const Constant *ConstantFinder::numberOf(const Value *V) const {
   return Load ? ofConstMember(*Load) : nullptr;
 }
 
-/// The name of the variable or function, or the number as text.
+/// The name of the variable or function; otherwise the number as text.
 std::string ConstantFinder::nameOf(const Value *V, bool Unsigned) const {
   const Value *Source = unconverted(V);
   if (const auto *Load = dyn_cast<LoadInst>(Source)) {
@@ -129,8 +130,8 @@ std::string ConstantFinder::nameOf(const Value *V, bool Unsigned) const {
   return cast<ConstantFP>(C)->getValueAPF().isNaN() ? "nan" : "inf";
 }
 
-/// True where \p Compare only asks for a number other than zero: what clang
-/// makes of a number that stands as a condition as well.
+/// True if \p Compare only asks whether a number is not zero, which is also
+/// what clang generates for a number used as a condition.
 static bool asksForNonZero(const CmpInst &Compare) {
   const auto *Zero = dyn_cast<Constant>(Compare.getOperand(1));
   return Zero && Zero->isZeroValue() &&
@@ -140,7 +141,7 @@ static bool asksForNonZero(const CmpInst &Compare) {
 
 void ConstantFinder::addComparison(CmpInst &Compare, Instruction &Predicate,
                                    const SliceEntry &E, bool Direct) {
-  // A plain number before one that has to be looked for.
+  // A literal number is preferred to one that must be searched for.
   unsigned Threshold = plainNumber(Compare.getOperand(1))   ? 1
                        : plainNumber(Compare.getOperand(0)) ? 0
                        : numberOf(Compare.getOperand(1))    ? 1
@@ -149,7 +150,7 @@ void ConstantFinder::addComparison(CmpInst &Compare, Instruction &Predicate,
   if (!numberOf(Compare.getOperand(Threshold)) || plainNumber(Other) ||
       isTruth(Other) || asksForNonZero(Compare) || !comparesValues(Compare))
     return;
-  auto Known = Found.find(&Compare);
+  auto *Known = Found.find(&Compare);
   if (Known != Found.end() && Known->second.Slice.Distance <= E.Distance)
     return;
   const DILocation *Place = Where(Compare);
@@ -167,7 +168,7 @@ void ConstantFinder::addComparison(CmpInst &Compare, Instruction &Predicate,
   Found[&Compare] = std::move(C);
 }
 
-/// Goes back from what \p Predicate decides by.
+/// Searches backward from the value that \p Predicate tests.
 void ConstantFinder::searchBack(Instruction &Predicate, const SliceEntry &E) {
   struct Item {
     Value *V;
@@ -182,7 +183,7 @@ void ConstantFinder::searchBack(Instruction &Predicate, const SliceEntry &E) {
       continue;
     if (auto *Compare = dyn_cast<CmpInst>(I)) {
       addComparison(*Compare, Predicate, E, It.Direct);
-      // Of truth values the comparisons that they came from.
+      // For truth values, the comparisons that they came from.
       for (Value *Operand : Compare->operands())
         if (isTruth(Operand))
           Work.push_back({Operand, It.Direct});

@@ -1,13 +1,13 @@
 //===- ConstantFinder.h - Comparisons with constants ----------------------===//
 //
-// Thesis, future work: constants of the source that guard an exposing
-// statement. Listed are comparisons of a number with a literal, an enumerator,
-// a constant that the compiler folded, or a global that is constant, that
-// decide a predicate of the slice: by values inside its function, or as the
-// result of a function that it calls.
+// Thesis, future work: constants in the source that guard an exposing
+// statement. Lists the comparisons of a number with a literal, an enumerator, a
+// constant that the compiler folded or a constant global, if they decide a
+// predicate of the slice by values inside its function or as the result of a
+// function that it calls.
 //
-// Not listed: null pointers; truth values (`flag == true`); `n != 0`, which is
-// also what clang makes of `if (n)` and `if (!n)`; the labels of a switch;
+// Not listed: null pointers; truth values (`flag == true`); `n != 0`, which
+// clang also generates for `if (n)` and `if (!n)`; the labels of a switch;
 // constants that reach the comparison through a variable.
 //
 //===----------------------------------------------------------------------===//
@@ -26,8 +26,8 @@ namespace tpc {
 
 class ConstantFinder {
 public:
-  /// \p Where gives a comparison's place in the user's own sources; null where
-  /// it is not to be listed.
+  /// \p Where returns the place of a comparison in user code; null if it is not
+  /// listed.
   ConstantFinder(
       const CallGraphResult &Calls, const LocationTypes &Types,
       PointsTo &Pointers, VisibleWrites &Writes, const SliceResult &Slice,

@@ -15,12 +15,12 @@ static cl::opt<unsigned>
     MaxSteps("tpc-max-path-steps", cl::Hidden, cl::init(32),
              cl::desc("Steps of a path that are written before the predicate, "
                       "and behind it"));
-/// Bounds the file of a unit with very many comparisons: their paths are cut
-/// shorter.
+/// Limits the size of the file of a link unit with very many comparisons: their
+/// paths are shortened further.
 static cl::opt<unsigned> MaxStepsOfUnit(
     "tpc-max-unit-path-steps", cl::Hidden, cl::init(10000),
     cl::desc("Steps of all paths of a link unit that are written"));
-/// Of a path that is cut: the first step, the last, and the gap.
+/// A shortened path keeps the first step, the last, and a step for the gap.
 static constexpr unsigned MinSteps = 3;
 
 size_t Explainer::stepsFor(size_t NumComparisons) {
@@ -36,15 +36,15 @@ StringRef PathStep::kindName() const {
   return Names[Kind];
 }
 
-/// Puts \p S at the end of \p Out, or into its last step where that is on the
-/// same line.
+/// Appends \p S to \p Out, or adds it to the last step if both are on the same
+/// line.
 static void join(std::vector<PathStep> &Out, PathStep S) {
   PathStep *Last = Out.empty() ? nullptr : &Out.back();
   if (!Last || !Last->Loc || !S.Loc || Last->Kind == PathStep::Omitted ||
       Last->Loc->getFile() != S.Loc->getFile() ||
       Last->Loc->getLine() != S.Loc->getLine())
     return Out.push_back(std::move(S));
-  // Of what is plain from the line itself the others need not speak.
+  // Steps that are obvious from the line need no words beside the others.
   auto IsPlain = [](const PathStep &P) { return P.Kind <= PathStep::Compute; };
   if (IsPlain(*Last) || Last->What.empty())
     Last->What = std::move(S.What);
@@ -57,7 +57,7 @@ static void join(std::vector<PathStep> &Out, PathStep S) {
   }
 }
 
-/// What happens in a library belongs to the user's line that it happens for.
+/// A step inside a library belongs to the line of user code that it runs for.
 void Explainer::add(Steps &Out, PathStep::KindTy Kind, const Instruction &I,
                     std::string What) {
   const DILocation *Loc = Words.userPlace(I);
@@ -80,8 +80,8 @@ std::string Explainer::compared(const Comparison &C) const {
   return Text + ", x being " + Parameter;
 }
 
-/// Where \p Load's function was handed the variable at \p Pointer by reference,
-/// the value came through memory, but the source has a call.
+/// If \p Load's function got the variable at \p Pointer by reference, the value
+/// came through memory, but the source has a call.
 void Explainer::byReference(const Value *Pointer, const LoadInst &Load,
                             Steps &Out) {
   const auto *Arg = dyn_cast<Argument>(Load.getPointerOperand());
@@ -97,7 +97,7 @@ void Explainer::byReference(const Value *Pointer, const LoadInst &Load,
                         "as", Words.argument(*Arg)));
 }
 
-/// One hop of the way from the read to the predicate.
+/// One hop on the path from the read to the predicate.
 void Explainer::hop(const Hop &H, const Comparison &C, bool IsOutcome,
                     Steps &Out) {
   const auto *To = dyn_cast<Instruction>(H.To);
@@ -148,13 +148,13 @@ Explainer::Steps Explainer::forward(const Comparison &C) {
   return Out;
 }
 
-/// One step of the way from the predicate to the exposing statement.
+/// One step on the path from the predicate to the exposing statement.
 void Explainer::dependence(const SliceStep &S, const SliceStep &Next,
                            bool IsFirst, Steps &Out) {
   auto Add = [&](PathStep::KindTy Kind, std::string What) {
     add(Out, Kind, *S.I, std::move(What));
   };
-  // A call that may throw decides as a predicate does.
+  // A call that may throw decides like a predicate.
   std::string How;
   if (const auto *Call = dyn_cast<CallBase>(S.I))
     How = " by whether " + Wording::callee(*Call) + " throws";
@@ -234,7 +234,7 @@ Explainer::Steps Explainer::backward(const Comparison &C) {
   return Out;
 }
 
-/// Leaves the first and the last steps of \p Path where there are more than
+/// Keeps the first and the last steps of \p Path if there are more than
 /// \p Most.
 static void shorten(std::vector<PathStep> &Path, size_t Most) {
   if (Path.size() <= Most)

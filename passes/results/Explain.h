@@ -1,9 +1,10 @@
 //===- Explain.h - Why a comparison is reported ---------------------------===//
 //
-// The way of a parameter's value from the read to the comparison, as
-// ParamUsageFinder went it, and from the predicate to the nearest exposing
-// statement, as BackwardPropagate did, in steps of the source: what happens on
-// one line is one step, what happens inside a library is left out.
+// The path of a parameter's value from the read to the comparison, which
+// ParamUsageFinder found, and the path from the predicate to the nearest
+// exposing statement, which BackwardPropagate found. Steps are those of the
+// source: everything on one line is one step, and steps inside a library are
+// left out.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_EXPLAIN_H
@@ -17,25 +18,26 @@
 namespace tpc {
 
 struct PathStep {
-  /// The later one says more: it stands for a line with several.
+  /// Of several steps on one line, the kind that comes last in this list is
+  /// shown.
   enum KindTy {
     Load,    ///< a variable is read
     Compute, ///< arithmetic
     Store,   ///< a variable is written
     Pass,    ///< an argument of a call
     Return,
-    Call,    ///< a function that holds the next step is called
+    Call,    ///< a function that contains the next step is called
     Value,   ///< a predicate that chooses a value
     Control, ///< a predicate that guards the next step
     Decide,  ///< the comparison's own predicate
     Compare,
     Read,
     Expose,
-    Omitted, ///< stands for steps that are too many
+    Omitted, ///< stands for steps left out because there are too many
   };
   KindTy Kind;
-  const llvm::DILocation *Loc; ///< null where it is not known
-  std::string What;            ///< in a few words
+  const llvm::DILocation *Loc; ///< null if it is not known
+  std::string What;            ///< a short description
 
   llvm::StringRef kindName() const;
 };
@@ -49,10 +51,10 @@ public:
       : Usage(Usage), Slice(Slice), Reads(Reads), Exposing(Exposing),
         Calls(Calls), Words(Words) {}
 
-  /// From the first read of \p C to its nearest exposing statement, at most
-  /// \p Most steps before the predicate and behind it.
+  /// From the first read of \p C to its nearest exposing statement, with at
+  /// most \p Most steps on each side of the predicate.
   std::vector<PathStep> path(const Comparison &C, size_t Most);
-  /// How many these are in a unit with \p NumComparisons.
+  /// The value for Most in a link unit with \p NumComparisons.
   static size_t stepsFor(size_t NumComparisons);
 
 private:

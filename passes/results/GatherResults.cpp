@@ -53,44 +53,15 @@ StringRef Comparison::relation() const {
     return TextRelation;
   if (!Compare)
     return "flag";
-  CmpInst::Predicate P =
-      Threshold == 1 ? Compare->getPredicate() : Compare->getSwappedPredicate();
-  switch (P) {
-  case CmpInst::ICMP_EQ:
-  case CmpInst::FCMP_OEQ:
-  case CmpInst::FCMP_UEQ:
-    return "==";
-  case CmpInst::ICMP_NE:
-  case CmpInst::FCMP_ONE:
-  case CmpInst::FCMP_UNE:
-    return "!=";
-  case CmpInst::ICMP_SGT:
-  case CmpInst::ICMP_UGT:
-  case CmpInst::FCMP_OGT:
-  case CmpInst::FCMP_UGT:
-    return ">";
-  case CmpInst::ICMP_SGE:
-  case CmpInst::ICMP_UGE:
-  case CmpInst::FCMP_OGE:
-  case CmpInst::FCMP_UGE:
-    return ">=";
-  case CmpInst::ICMP_SLT:
-  case CmpInst::ICMP_ULT:
-  case CmpInst::FCMP_OLT:
-  case CmpInst::FCMP_ULT:
-    return "<";
-  case CmpInst::ICMP_SLE:
-  case CmpInst::ICMP_ULE:
-  case CmpInst::FCMP_OLE:
-  case CmpInst::FCMP_ULE:
-    return "<=";
-  default:
-    llvm_unreachable("see comparesValues()");
-  }
+  StringRef Relation =
+      relationOf(Threshold == 1 ? Compare->getPredicate()
+                                : Compare->getSwappedPredicate());
+  assert(!Relation.empty() && "see comparesValues()");
+  return Relation;
 }
 
-/// The nearest of the predicates that \p C decides and that an exposing
-/// statement depends on; of several equally near ones the first.
+/// The nearest predicate that \p C decides and an exposing statement depends
+/// on; the first of several at the same distance.
 static bool findNearest(const ParameterComparison &C, const SliceResult &Slice,
                         Comparison &Out) {
   bool Found = false;
@@ -107,15 +78,15 @@ static bool findNearest(const ParameterComparison &C, const SliceResult &Slice,
   return Found;
 }
 
-/// Counts for each comparison the others of its condition that compare a
-/// parameter.
+/// Counts for each comparison the other comparisons with parameters in its
+/// condition.
 static void countOthers(GatheredResults &R) {
   SmallVector<const Instruction *, 0> Predicates;
   for (const auto *List : {&R.Comparisons, &R.Constants})
     for (const Comparison &C : *List)
       Predicates.push_back(C.Predicate);
   const Conditions All(Predicates);
-  // A condition's comparisons are few, a unit's are many.
+  // A condition has few comparisons, a link unit has many.
   DenseMap<const Instruction *, SmallVector<const Comparison *, 2>> ByCondition;
   for (const Comparison &C : R.Comparisons)
     ByCondition[All.of(*C.Predicate)].push_back(&C);
@@ -127,7 +98,7 @@ static void countOthers(GatheredResults &R) {
           });
 }
 
-/// A UUID of version 5 (RFC 4122) of \p Name, in a namespace of our own.
+/// The UUID of version 5 (RFC 4122) for \p Name, in TPC's own namespace.
 static std::string uuidOf(StringRef Name) {
   static constexpr uint8_t Namespace[16] = {0x6b, 0x0f, 0x7a, 0x52, 0x2c, 0x9e,
                                             0x4d, 0x61, 0x9a, 0x37, 0x8f, 0x15,
@@ -145,9 +116,9 @@ static std::string uuidOf(StringRef Name) {
 
 namespace {
 
-/// Gives comparisons their keys. What a macro writes several times has one
-/// place; there the order in the function tells it apart. Instances of one
-/// function have the same keys, and so have those that were inlined.
+/// Gives comparisons their keys. Several comparisons from one macro share a
+/// place; their order in the function distinguishes them. All instances of a
+/// function have the same keys, also after inlining.
 class Namer {
 public:
   explicit Namer(const Options &Opts) : Opts(Opts) {}
@@ -176,14 +147,14 @@ private:
   StringMap<DenseMap<Instance, SmallVector<const Instruction *, 1>>> Places;
 };
 
-/// Finds out where comparisons stand in the user's own sources.
+/// Finds the places of comparisons in user code.
 class Places {
 public:
   Places(const Options &Opts, const RuleMatches &Rules)
       : Sources(Opts), Rules(Rules) {}
 
-  /// The place of \p I, or of the call of the transparent function that it is
-  /// in; null where it is in code that is not the user's.
+  /// The place of \p I, or of the call of the transparent function that
+  /// contains it; null if it is not in user code.
   const DILocation *of(const Instruction &I) {
     const DISubprogram *Through = nullptr;
     const DILocation *Loc = I.getDebugLoc();
@@ -199,8 +170,8 @@ private:
 
 } // namespace
 
-/// True where \p Compare is about a global object of an opaque class: what
-/// the macros for logging ask of their own.
+/// True if \p Compare tests a global object of an opaque class, as the macros
+/// for logging do.
 static bool asksLibrary(const CmpInst &Compare, const RuleMatches &Rules) {
   return any_of(Compare.operands(), [&](const Use &U) {
     const auto *Load = dyn_cast<LoadInst>(U);
@@ -213,7 +184,7 @@ static bool asksLibrary(const CmpInst &Compare, const RuleMatches &Rules) {
   });
 }
 
-/// \p P without what is found out about its surroundings.
+/// \p P without the fields that depend on its surroundings.
 static Comparison comparisonOf(const ParameterComparison &P) {
   Comparison C{};
   C.Compare = P.Compare;
@@ -232,7 +203,7 @@ static Comparison comparisonOf(const ParameterComparison &P) {
 
 namespace {
 
-/// Collects what is reported of the comparisons with parameters.
+/// Collects the comparisons with parameters to report.
 class Gatherer {
 public:
   Gatherer(Module &M, ModuleAnalysisManager &AM, Places &Own)
@@ -260,7 +231,7 @@ public:
     }
     return std::move(R);
   }
-  /// Of run(): what is compared with a parameter.
+  /// For run(): what is compared with a parameter.
   bool isWithParameter(const CmpInst &Compare) const {
     return WithParameter.contains(&Compare);
   }
@@ -276,13 +247,13 @@ private:
   Sides Both;
   GatheredResults R;
   SmallPtrSet<const CmpInst *, 16> WithParameter;
-  /// Numbers of comparisons, by what compares.
+  /// Indices of comparisons, by the value that compares.
   DenseMap<const Value *, SmallVector<unsigned, 1>> Known;
 };
 
 } // namespace
 
-/// Why \p P is not reported; none where it is.
+/// Why \p P is not reported; none if it is.
 std::optional<NotReported::WhyTy>
 Gatherer::gather(const ParameterComparison &P) {
   Comparison C = comparisonOf(P);
@@ -300,7 +271,7 @@ Gatherer::gather(const ParameterComparison &P) {
     ++R.WithoutDebugInfo;
     return NotReported::WithoutDebugInfo;
   }
-  // The same comparison is reported with its other operand.
+  // The same comparison is reported for its other operand.
   if (Both.isOtherWay(P, *C.Predicate))
     return std::nullopt;
   if (Both.isMeasured(P, *C.Predicate))
@@ -311,8 +282,8 @@ Gatherer::gather(const ParameterComparison &P) {
   return std::nullopt;
 }
 
-/// Adds \p C, of one read. A second read of the same parameter is the same
-/// comparison.
+/// Adds \p C, the comparison of one read. A second read of the same parameter
+/// is the same comparison.
 void Gatherer::add(Comparison C) {
   unsigned Read = C.Reads.front();
   SmallVector<unsigned, 1> &Alike = Known[C.Compare ? C.Compare : C.FlagValue];
@@ -361,7 +332,7 @@ GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
   return R;
 }
 
-/// What the printer says of \p C and of where it stands.
+/// Prints \p C and its place.
 static void print(raw_ostream &OS, const Comparison &C, StringRef What) {
   OS << "  " << C.typeName() << " '" << What << "' relation " << C.relation()
      << " as " << C.How.text() << " distance " << C.Slice.Distance << " others "

@@ -1,9 +1,9 @@
 //===- GatherResults.h - The threshold predicate comparisons --------------===//
 //
-// Thesis A.12: what ParamUsageFinder and BackwardPropagate agree on, and the
-// label of each. What is a threshold is decided in ParamUsageFinder and
-// ConstantFinder; docs/explanation/architecture.md#the-passes says what else
-// another kind needs.
+// Thesis A.12: the comparisons that both ParamUsageFinder and BackwardPropagate
+// found, with the label of each. ParamUsageFinder and ConstantFinder decide
+// what is a threshold; docs/explanation/architecture.md#the-passes lists what a
+// new kind needs.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_GATHERRESULTS_H
@@ -19,25 +19,26 @@ namespace tpc {
 struct Comparison {
   enum TypeTy { Parameter, Flag, Derived, Constant };
   TypeTy Type;
-  llvm::CmpInst *Compare;       ///< null for a flag and for text
-  unsigned Threshold = 0;       ///< operand of Compare that is the threshold
-  llvm::Value *FlagValue;       ///< what decides where there is no Compare
+  llvm::CmpInst *Compare; ///< null for a flag and for text
+  unsigned Threshold = 0; ///< the operand of Compare that is the threshold
+  llvm::Value *FlagValue; ///< the value that decides if there is no Compare
   llvm::StringRef TextRelation; ///< see ParameterComparison
-  llvm::Instruction *Predicate; ///< the nearest one that it decides
+  llvm::Instruction *Predicate; ///< the nearest predicate that it decides
   bool Direct;                  ///< see Decision
   bool IsOperand;               ///< see ParameterComparison
   Transform How;
-  llvm::SmallVector<unsigned, 1> Reads; ///< all of one parameter name
-  std::string ConstantName; ///< of a constant: its variable or its number
+  llvm::SmallVector<unsigned, 1> Reads; ///< all with the same parameter name
+  std::string
+      ConstantName; ///< for a constant: the name of its variable, or the number
   SliceEntry Slice;
   unsigned Way; ///< see Decision
   unsigned OtherThresholds = 0;
-  std::string Key; ///< survives a rebuild
-  /// Where it stands in the user's own sources: for a comparison that is in
-  /// std::min, say, the call of that.
+  std::string Key; ///< stays the same in the next build
+  /// The place in user code. A comparison inside std::min, for example, has the
+  /// place of the call of std::min.
   const llvm::DILocation *Where;
 
-  /// The instruction that stands there.
+  /// The instruction at that place.
   const llvm::Instruction &place() const {
     if (Compare)
       return *llvm::cast<llvm::Instruction>(Compare);
@@ -46,11 +47,11 @@ struct Comparison {
                : *Predicate;
   }
   llvm::StringRef typeName() const;
-  /// The operator with the threshold on the right-hand side, or `flag`.
+  /// The operator with the threshold on the right, or `flag`.
   llvm::StringRef relation() const;
 };
 
-/// A comparison with a parameter that is not reported, and why.
+/// A comparison with a parameter that is not reported, and the reason.
 struct NotReported {
   enum WhyTy {
     NotExposed,
@@ -63,14 +64,14 @@ struct NotReported {
 };
 
 struct GatheredResults {
-  /// In the order of the reads and then of the way forward.
+  /// In the order of the reads, and for one read of the forward search.
   std::vector<Comparison> Comparisons;
-  /// Those with a constant, in the order of the program. None of them is in
-  /// the list above.
+  /// Comparisons with constants, in the order of the program. None of them is
+  /// in Comparisons.
   std::vector<Comparison> Constants;
-  unsigned OutsideSources = 0; ///< comparisons in code that is not the user's
-  /// Functions that compare a parameter which one of several calls handed
-  /// them: their other calls compare something else.
+  unsigned OutsideSources = 0; ///< comparisons in code that is not user code
+  /// Functions that compare a parameter which only some of their calls pass;
+  /// the other calls compare something else.
   llvm::SmallSetVector<llvm::Function *, 4> Shared;
   unsigned WithoutDebugInfo = 0; ///< comparisons whose place is not known
   std::vector<NotReported> Others;

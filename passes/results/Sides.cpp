@@ -11,8 +11,7 @@ using namespace llvm;
 
 namespace tpc {
 
-/// A configured value has few sources. One with more is taken for a
-/// measurement.
+/// A configured value has few sources; one with more counts as measured.
 static cl::opt<unsigned> MaxSources(
     "tpc-max-sources", cl::Hidden, cl::init(256),
     cl::desc("Sources of an operand that are looked at to tell a threshold"));
@@ -32,8 +31,8 @@ Sides::Sides(const ParameterUsage &Usage, const ParamCallFinder::Result &Reads,
       ByCompare[C.Compare].push_back(&C);
 }
 
-/// True where \p Call gets a pointer to one of \p Variables, and not only to an
-/// object that it is in: a node hands itself on all the time.
+/// True if \p Call gets a pointer to one of \p Variables, and not only to an
+/// object that contains it: a node passes itself on all the time.
 bool Sides::isHanded(const Instruction &Call,
                      ArrayRef<Location> Variables) const {
   const auto *To = dyn_cast<CallBase>(&Call);
@@ -47,7 +46,7 @@ bool Sides::isHanded(const Instruction &Call,
   });
 }
 
-/// The variables that \p Write, a store or a parameter's read, writes.
+/// The variables that \p Write, a store or a parameter read, writes.
 Locations Sides::writtenBy(const Instruction &Write) const {
   Locations All;
   if (const Value *Pointer = getLoadStorePointerOperand(&Write))
@@ -58,8 +57,8 @@ Locations Sides::writtenBy(const Instruction &Write) const {
   return All;
 }
 
-/// What \p Load can have found; false where that is not only what is stored by
-/// the program to the same variable.
+/// Adds what \p Load may read; false if anything but the stores of the program
+/// to the same variable may be read.
 bool Sides::addStored(const LoadInst &Load, Sources &Out) const {
   Locations From = Pointers.resolve(Load.getPointerOperand(), true);
   if (From.empty())
@@ -73,8 +72,8 @@ bool Sides::addStored(const LoadInst &Load, Sources &Out) const {
     else if (isHanded(*Write, From))
       return false;
   }
-  // What a callback is handed is taken for any object of its class, also for
-  // one that is a part of a larger one. That is not meant.
+  // The argument of a callback counts as any object of its class, even one that
+  // is part of a larger object. That is too wide here.
   return all_of(From, [&](const Location &A) {
     return any_of(Found, [&](const Instruction *Write) {
       return any_of(writtenBy(*Write), [&](const Location &B) {
@@ -85,8 +84,8 @@ bool Sides::addStored(const LoadInst &Load, Sources &Out) const {
   });
 }
 
-/// Adds what \p V is computed from; false where that is not known, or comes
-/// from outside.
+/// Adds what \p V is computed from; false if that is not known, or comes from
+/// outside.
 bool Sides::addSources(const Value *V, Sources &Out) const {
   if (const auto *Arg = dyn_cast<Argument>(V)) {
     const Function &F = *Arg->getParent();
@@ -111,7 +110,7 @@ bool Sides::addSources(const Value *V, Sources &Out) const {
     for (const Function *F : Callees)
       for (const BasicBlock &BB : *F)
         if (const auto *Return = dyn_cast<ReturnInst>(BB.getTerminator())) {
-          // A callee by another type may return nothing.
+          // A callee that is called with another type may return nothing.
           if (!Return->getReturnValue())
             return false;
           Out.push_back(Return->getReturnValue());
@@ -129,7 +128,7 @@ bool Sides::addSources(const Value *V, Sources &Out) const {
   return true;
 }
 
-/// True where \p V is computed of parameters and constants alone.
+/// True if \p V is computed from parameters and constants alone.
 bool Sides::isConfigured(const Value *V) {
   auto [It, New] = Known.try_emplace(V, false);
   if (!New)
@@ -147,13 +146,13 @@ bool Sides::isConfigured(const Value *V) {
   return Known[V] = true;
 }
 
-/// The length of the way from the read to the predicate.
+/// The length of the path from the read to the predicate.
 size_t Sides::lengthOf(const ParameterComparison &C) const {
   return Usage.pathTo(C.Decisions.front().Way).size();
 }
 
-/// Of two parameters whose names depend on what runs nobody knows whether they
-/// are one.
+/// Nobody knows whether two parameters whose names depend on the call are the
+/// same.
 bool Sides::isSameParameter(unsigned Read, unsigned Other) const {
   StringRef Name = Reads[Read].Name;
   return Read == Other ||

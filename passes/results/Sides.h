@@ -1,9 +1,9 @@
 //===- Sides.h - Which operand is the threshold ---------------------------===//
 //
-// Both operands of a comparison can have the value of a parameter:
-// `if (out.data < lower_)` after `out.data = upper_`. A threshold is what is
-// always configured; what is a measured value on another way is what is
-// compared with it.
+// Both operands of a comparison can hold the value of a parameter: `if
+// (out.data < lower_)` after `out.data = upper_`. The threshold is the operand
+// that is always configured. An operand that is a measured value on another
+// path is the one that is compared with it.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_SIDES_H
@@ -19,20 +19,20 @@ namespace tpc {
 
 class Sides {
 public:
-  /// Of \p Usage only what \p IsExposed holds for is looked at: another side
-  /// that is not reported makes this one no less of a threshold.
+  /// Considers only what \p IsExposed holds for in \p Usage: another side that
+  /// is not reported does not make this side less of a threshold.
   Sides(const ParameterUsage &Usage, const ParamCallFinder::Result &Reads,
         const CallGraphResult &Calls, PointsTo &Pointers, VisibleWrites &Writes,
         llvm::function_ref<bool(const ParameterComparison &)> IsExposed);
 
-  /// True where the other operand is the same parameter by a shorter way, and
-  /// may be the threshold, in what decides \p Predicate: calls of a function
-  /// may differ there.
+  /// True if the other operand of \p C, in what decides \p Predicate, is the
+  /// same parameter by a shorter path and may be the threshold. Calls of one
+  /// function may differ in this.
   bool isOtherWay(const ParameterComparison &C,
                   const llvm::Instruction &Predicate);
-  /// True where \p C is, in what decides \p Predicate, about the operand that
-  /// is not the threshold: it can be something else than a parameter, and the
-  /// other one cannot.
+  /// True if \p C, in what decides \p Predicate, is about the operand that is
+  /// not the threshold: it can be something else than a parameter, and the
+  /// other operand cannot.
   bool isMeasured(const ParameterComparison &C,
                   const llvm::Instruction &Predicate);
 
@@ -53,7 +53,7 @@ private:
   PointsTo &Pointers;
   VisibleWrites &Writes;
   llvm::SmallPtrSet<const llvm::Value *, 16> Parameters;
-  /// The comparisons of which both operands have a parameter's value.
+  /// The comparisons whose operands both hold the value of a parameter.
   llvm::DenseMap<const llvm::CmpInst *,
                  llvm::SmallVector<const ParameterComparison *, 4>>
       ByCompare;

@@ -38,7 +38,7 @@ static StringRef lastPart(StringRef Name) {
 }
 
 std::string Wording::function(const Function &F) {
-  // The debug information keeps the name of what was cloned.
+  // The debug information keeps the name of the function that was cloned.
   const DISubprogram *SP = F.getSubprogram();
   StringRef Linkage = SP ? SP->getLinkageName() : "";
   return lastPart(qualifiedName(Linkage.empty() ? F.getName() : Linkage))
@@ -53,7 +53,7 @@ std::string Wording::callee(const CallBase &Call) {
   StringRef Name = F->getName();
   if (!Name.consume_front("llvm."))
     return function(*F);
-  // `llvm.fabs.f64` is what the source calls fabs().
+  // The source calls `llvm.fabs.f64` fabs().
   return Name.split('.').first.str() + "()";
 }
 
@@ -78,7 +78,7 @@ std::string Wording::object(const Value *Pointer) const {
   return nameOf(Pointer, /*Scalar=*/false);
 }
 
-/// The local variable or argument of its own function that \p V is.
+/// The name of \p V, a local variable or argument of its function \p F.
 static std::string localName(const Value &V, const Function &F) {
   for (const DbgVariableRecord *R : variableRecords(const_cast<Value *>(&V)))
     if (R->getVariable()->getScope()->getSubprogram() == F.getSubprogram())

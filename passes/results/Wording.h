@@ -1,8 +1,8 @@
-//===- Wording.h - What the program does, in the source's words -----------===//
+//===- Wording.h - Describes the program in words of its source -----------===//
 //
-// For people who read why a comparison is reported, and where the analysis is
-// blind: names of functions and variables as the source has them, and the
-// places of the user's own sources that library code stands for.
+// For people who read why a comparison is reported, and where the analysis has
+// blind spots: the names of functions and variables as the source has them, and
+// the places in user code that library code stands for.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_WORDING_H
@@ -15,8 +15,8 @@
 
 namespace tpc {
 
-/// True for what clang makes of `a * b + c`: a call, but of nothing that the
-/// source calls.
+/// True for the call that clang generates for `a * b + c`, which is no call in
+/// the source.
 bool isMultiplyAdd(const llvm::Instruction &I);
 
 class Wording {
@@ -24,20 +24,21 @@ public:
   Wording(const LocationTypes &Types, PointsTo &Pointers,
           const ExternCallFinder::Result &Exposing, const Options &Opts);
 
-  /// The user's line that \p I belongs to: its own or, where a library's
-  /// function was inlined, that of the call. Null for library code.
+  /// The line of user code that \p I belongs to: its own or, if \p I was
+  /// inlined from a library function, that of the call. Null for library code.
   const llvm::DILocation *userPlace(const llvm::Instruction &I);
 
   /// `above()`: without scopes and parameters.
   static std::string function(const llvm::Function &F);
   static std::string callee(const llvm::CallBase &Call);
-  /// `Node::limit_`; empty where nothing names it.
+  /// `Node::limit_`; empty if it has no name.
   std::string variable(const llvm::Value *Pointer) const;
   /// The same for a whole object.
   std::string object(const llvm::Value *Pointer) const;
-  /// The variable, constant or call that \p V is; empty where it is none.
+  /// The variable, constant or call that \p V is; empty if it is none of these.
   std::string value(const llvm::Value *V) const;
-  /// \p Before and `into Node::limit_`, say; without what nothing names.
+  /// \p Before and, for example, `into Node::limit_`; without the name if there
+  /// is none.
   static std::string with(std::string Before, llvm::StringRef Preposition,
                           const std::string &Name);
   std::string argument(const llvm::Argument &Arg) const;

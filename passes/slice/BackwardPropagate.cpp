@@ -13,6 +13,7 @@
 #include "support/Print.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/ADT/Statistic.h"
 #include "llvm/Analysis/ValueTracking.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Module.h"
@@ -20,6 +21,9 @@
 using namespace llvm;
 
 namespace tpc {
+
+#define DEBUG_TYPE "tpc-backward-propagate"
+STATISTIC(NumPredicates, "Predicates that an exposing statement depends on");
 
 AnalysisKey BackwardPropagate::Key;
 
@@ -56,9 +60,9 @@ public:
 private:
   /// Why an instruction is in the slice; bits.
   enum Reason : unsigned char {
-    Runs = 1,      ///< that it runs matters
-    Gives = 2,     ///< the value that it gives or writes matters
-    Touches = 4,   ///< a call that is handed an object which matters
+    Runs = 1,      ///< whether it runs matters
+    Gives = 2,     ///< the value that it computes or writes matters
+    Touches = 4,   ///< a call that gets an object which matters
     Exposes = 8,   ///< an exposing statement
     Throwing = 16, ///< a call: whether it throws matters
   };
@@ -106,12 +110,12 @@ private:
   DenseMap<const Instruction *, unsigned char> Seen;
   SmallPtrSet<const Value *, 16> SeenArguments;
   SmallPtrSet<const Value *, 16> SeenPointers;
-  /// Writes of what an exposing statement shows that are decided about.
+  /// Writes of what an exposing statement shows that have been decided.
   SmallPtrSet<const Instruction *, 16> Settled;
-  SmallVector<Item, 0> Next; ///< what the next round holds
+  SmallVector<Item, 0> Next; ///< the items of the next round
   unsigned Round = 1;
-  unsigned Current = 0; ///< exposing statement of the item at hand
-  unsigned Here = 0;    ///< step of the item at hand
+  unsigned Current = 0; ///< exposing statement of the current item
+  unsigned Here = 0;    ///< step of the current item
 };
 
 unsigned Slicer::addStep(Instruction *I, Why Because) {
@@ -128,17 +132,17 @@ void Slicer::enter(Instruction *I, unsigned char Reasons, Why Because) {
   Next.push_back({I, New, Current, addStep(I, Because)});
 }
 
-/// \p Predicate, or a call that may throw, controls what is at hand: this round
-/// is its distance.
+/// \p Predicate, or a call that may throw, controls the current item; the
+/// number of this round is its distance.
 void Slicer::enterDecider(Instruction *Predicate, Why Because) {
   if (!isPredicate(*Predicate))
     return enter(Predicate, Throwing, Because);
   auto [It, New] = Result.Predicates.try_emplace(Predicate);
   if (New)
     It->second = {Round, Current, addStep(Predicate, Because)};
-  // Which exception is there, those that may throw it decide, not what the
-  // landing pads hand over. And that nobody else needs an object any more is
-  // what nobody means who lets go of it.
+  // For a check of the exception's type, the instructions that throw it matter,
+  // not the result of the landing pad. A reference count is no decision of the
+  // code that releases an object.
   bool IsGiven = !handlerAskedFor(*Predicate) && !isCounting(*Predicate);
   enter(Predicate, IsGiven ? Gives : Runs, Because);
 }
@@ -155,14 +159,14 @@ void Slicer::enterControllers(const Instruction &I) {
   if (Ifs.isControlledByEntry(I)) {
     for (CallBase *Call : Calls.callers(I.getFunction()))
       enter(Call, Runs, Why::Calls);
-    // One of several functions is chosen as a value is.
+    // Passing on one of several functions is the choice of a value.
     for (Instruction *Mention : Calls.mentions(I.getFunction()))
       enter(Mention, isa<PHINode, SelectInst>(Mention) ? Gives : Runs,
             Why::Mentions);
   }
 }
 
-/// The value of \p V matters: what gives it enters the next round.
+/// The value of \p V matters: what computes it enters the next round.
 void Slicer::enterValue(const Value *V) {
   if (V->getType()->isPointerTy())
     return enterPointer(V);
@@ -180,8 +184,8 @@ void Slicer::enterValue(const Value *V) {
     }
 }
 
-/// Which object a pointer leads to matters where the program chooses it: by
-/// an index, a condition, a call or a pointer in memory.
+/// Which object a pointer leads to matters if the program chooses it: by an
+/// index, a condition, a call or a pointer in memory.
 void Slicer::enterPointer(const Value *V) {
   if (const auto *GEP = dyn_cast<GetElementPtrInst>(V)) {
     for (const Use &Index : GEP->indices())
@@ -194,7 +198,7 @@ void Slicer::enterPointer(const Value *V) {
     enter(const_cast<Instruction *>(cast<Instruction>(V)), Gives, Why::Gives);
 }
 
-/// What is in memory at \p Pointer, a scalar or an array of them, matters where
+/// The memory at \p Pointer, a scalar or an array of scalars, matters where
 /// \p At reads it.
 void Slicer::enterMemory(const Value *Pointer, const Instruction &At) {
   Locations Read = Pointers.resolve(Pointer, true);
@@ -203,8 +207,7 @@ void Slicer::enterMemory(const Value *Pointer, const Instruction &At) {
   for (const Location &L : Read) {
     if (Writes.isSharedBy(L, At, Pointer) && !SeenWritten.insert(L).second)
       continue;
-    // What was copied there is among the writes; that it was copied matters,
-    // too.
+    // The writes include what was copied there; that it was copied matters too.
     for (Instruction *Copy : Accesses.copiesTo(L))
       enter(Copy, Runs, Why::Writes);
     for (Instruction *Write : Writes.writesOf(L, At, Pointer))
@@ -212,8 +215,8 @@ void Slicer::enterMemory(const Value *Pointer, const Instruction &At) {
   }
 }
 
-/// A value that control flow merges: the predicates that choose between the
-/// ways matter as if they controlled this instruction.
+/// A phi: the predicates that choose between its edges matter as if they
+/// controlled this instruction.
 void Slicer::enterMerge(const PHINode &Phi) {
   for (unsigned N = 0; N < Phi.getNumIncomingValues(); ++N) {
     enterValue(Phi.getIncomingValue(N));
@@ -223,7 +226,7 @@ void Slicer::enterMerge(const PHINode &Phi) {
   }
 }
 
-/// What \p Call is handed matters.
+/// The arguments of \p Call matter.
 void Slicer::enterArguments(const CallBase &Call) {
   for (const Use &Arg : Call.args()) {
     enterValue(Arg);
@@ -244,9 +247,9 @@ void Slicer::enterResult(CallBase &Call) {
   enterArguments(Call);
 }
 
-/// True where \p Call only enters functions whose writes are seen by their
-/// stores: the user's own, and what holds one and calls it. A library's
-/// containers are more opaque.
+/// True if \p Call only enters functions whose writes are seen through their
+/// stores: user code, and library code that stores a function and calls it.
+/// Containers of a library are opaque.
 bool Slicer::isSeenThrough(const CallBase &Call) {
   SmallVector<Function *, 1> Callees = Calls.callees(Call);
   return !Callees.empty() && all_of(Callees, [&](const Function *F) {
@@ -254,11 +257,11 @@ bool Slicer::isSeenThrough(const CallBase &Call) {
   });
 }
 
-/// \p Call is handed an object that matters: it may put its other arguments
-/// into it, and what is written through a pointer that it returns is in it.
+/// \p Call gets an object that matters: it may put its other arguments into the
+/// object, and may return a pointer into it through which it is written.
 void Slicer::enterTouched(CallBase &Call) {
-  // What an exposing statement shows is in the slice from the beginning; the
-  // publisher that does it is not among it.
+  // What an exposing statement shows is in the slice from the beginning; its
+  // publisher is not part of that.
   if (Seen.lookup(&Call) & Exposes)
     return;
   if (!isSeenThrough(Call))
@@ -267,8 +270,8 @@ void Slicer::enterTouched(CallBase &Call) {
     enterDerived(&Call);
 }
 
-/// Which object a virtual function of the user's is called on decides what
-/// runs.
+/// The object on which a virtual function of user code is called decides which
+/// function runs.
 void Slicer::enterVirtualCall(const CallBase &Call) {
   auto How = ClassHierarchy::match(Call);
   if (How && any_of(Calls.callees(Call),
@@ -276,7 +279,8 @@ void Slicer::enterVirtualCall(const CallBase &Call) {
     enterPointer(How->Object);
 }
 
-/// Whether \p Call throws matters: what throws in the functions that it calls.
+/// Whether \p Call throws matters: the instructions that throw in the functions
+/// that it calls.
 void Slicer::enterThrowers(CallBase &Call) {
   for (const Function *Callee : Calls.callees(Call))
     for (CallBase *Inner : Thrown.leaving(Callee))
@@ -294,7 +298,7 @@ void Slicer::enterDerived(const Value *Pointer) {
       enterDerived(I);
     else if (auto *Store = dyn_cast<StoreInst>(I);
              Store && Store->getPointerOperand() == Pointer &&
-             // What is stored into a local object is known by its place.
+             // A store into a local object is found by its place.
              !isa<AllocaInst>(getUnderlyingObject(Pointer)))
       enter(I, Gives, Why::Writes);
     else if (isa<MemTransferInst>(I))
@@ -306,9 +310,10 @@ void Slicer::enterDerived(const Value *Pointer) {
   }
 }
 
-/// What is in the publisher at \p Object is not shown; which one it is decides
-/// where: what chooses it, the pointer to it that was stored, and what the
-/// user's functions return. Of an object that it is in only what chooses that.
+/// The contents of the publisher at \p Object are not shown. Which publisher it
+/// is decides where the message goes: what chooses it, the stored pointer to
+/// it, and what user functions return. If it is part of an object, only what
+/// chooses the object.
 void Slicer::enterPublisher(const Value *Object) {
   SmallVector<std::pair<const Value *, bool>, 4> Work{{Object, true}};
   SmallPtrSet<const Value *, 8> Known;
@@ -336,7 +341,7 @@ void Slicer::enterPublisher(const Value *Object) {
   }
 }
 
-/// All that an exposing statement shows: what is in its arguments.
+/// Everything that an exposing statement shows: the contents of its arguments.
 void Slicer::enterReachable(CallBase &Call) {
   const Rule *Row = Rules.match(Call);
   const Value *Object = Row ? objectOf(Call, *Row) : nullptr;
@@ -354,7 +359,7 @@ void Slicer::enterReachable(CallBase &Call) {
               isa<CallBase>(Write) && !isa<IntrinsicInst>(Write) ? Touches
                                                                  : Gives,
               Why::Writes);
-      // The others come too late, or are overwritten.
+      // The other writes come too late, or are overwritten.
       for (Instruction *Write : Accesses.writesInto(L))
         Settled.insert(Write);
     }
@@ -374,12 +379,12 @@ void Slicer::enterOperands(Instruction &I) {
              SeenLoaded.insert(L).second;
     if (!New)
       return enterPointer(Load->getPointerOperand());
-    // What is copied is among the definitions; that it is, matters too.
+    // The definitions include what is copied; that it is copied matters too.
     for (const Location &L : Pointers.touched(*Load))
       for (Instruction *Copy : Accesses.copiesTo(L))
         enter(Copy, Runs, Why::Writes);
     for (Instruction *Write : Writes.definitionsOf(*Load)) {
-      // What a library sets to a constant, it sets in its constructors.
+      // A constant that library code stores is stored in its constructors.
       const auto *Store = dyn_cast<StoreInst>(Write);
       if (!Store || !isa<Constant>(Store->getValueOperand()) ||
           Sources.has(*Write->getFunction()))
@@ -437,7 +442,9 @@ SliceResult Slicer::run() {
 }
 
 SliceResult BackwardPropagate::run(Module &M, ModuleAnalysisManager &AM) {
-  return Slicer(M, AM).run();
+  SliceResult R = Slicer(M, AM).run();
+  NumPredicates += R.numPredicates();
+  return R;
 }
 
 PreservedAnalyses BackwardPropagatePrinter::run(Module &M,

@@ -1,21 +1,23 @@
 //===- BackwardPropagate.h - What the exposing statements depend on -------===//
 //
-// Thesis A.10 and its algorithm 3: the slice, from all exposing statements
-// backwards over control and data dependence, by rounds. The round in which a
-// predicate first controls an instruction of the slice is its distance.
+// Thesis A.10 and its algorithm 3: the slice, computed in rounds from all
+// exposing statements backwards over control and data dependence. The distance
+// of a predicate is the round in which it first controls an instruction of the
+// slice.
 //
-// Control: the predicates that control an instruction's block, and the calls
-// of its function where it runs whenever the function does. A call that
-// may throw, as the user wrote it, is like a predicate: it enters the next
-// round, and what throws in the function that it calls the one after that.
-// Data: operands; loads to the writes of the variable; arguments to the calls;
-// results to the callee's returns; a value that control flow merges to the
-// predicates that choose it; for an exposing statement all that is reachable
-// from its arguments. A call that is in the slice only because of what it
-// calls, not because of its result, brings in no operands.
+// Control: the predicates that control the block of an instruction, and the
+// calls of its function if it runs whenever the function does. A call that may
+// throw in user code is like a predicate: it enters the next round, and what
+// throws in the called function enters the round after that.
 //
-// The way in and out of a function is not matched: calls are told apart by
-// their callee alone, as in the thesis.
+// Data: from instructions to operands, from loads to the writes of the
+// variable, from arguments to the calls, from results to the callee's returns,
+// from phis to the predicates that choose; for an exposing statement,
+// everything that can be reached from its arguments. A call that is in the
+// slice only for what it calls, not for its result, adds no operands.
+//
+// Calls and returns are not matched: calls are distinguished by their callee
+// alone, as in the thesis.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_BACKWARDPROPAGATE_H
@@ -29,8 +31,8 @@
 
 namespace tpc {
 
-/// One thing of the slice, and the thing nearer to the exposing statement that
-/// brought it in.
+/// An element of the slice, and the element nearer to the exposing statement
+/// that added it.
 struct SliceStep {
   enum WhyTy : unsigned char {
     Exposes,  ///< it is the exposing statement
@@ -38,18 +40,18 @@ struct SliceStep {
     Chooses,  ///< decides which value the next one has
     Calls,    ///< calls the function of the next one
     Mentions, ///< hands that function on, so that somebody else calls it
-    Gives,    ///< the next one computes with its value
+    Gives,    ///< the next one computes with its result
     Writes,   ///< writes what the next one reads
-    Returns,  ///< returns what the next one, a call, gives
-    Passes,   ///< hands the function of the next one an argument
-    Throws,   ///< throws, or lets through, what the next one, a call, throws
+    Returns,  ///< returns the result of the next one, a call
+    Passes,   ///< passes an argument to the function of the next one
+    Throws,   ///< throws, or does not catch, what the next one, a call, throws
   };
   llvm::Instruction *I;
-  unsigned Next; ///< number of the step that brought it in
+  unsigned Next; ///< number of the step that added it
   WhyTy Why;
 };
 
-/// How a predicate got into the slice.
+/// How a predicate entered the slice.
 struct SliceEntry {
   unsigned Distance;
   unsigned Exposing; ///< number of the nearest exposing statement
@@ -58,11 +60,11 @@ struct SliceEntry {
 
 class SliceResult {
 public:
-  /// None where no exposing statement depends on \p Predicate.
+  /// None if no exposing statement depends on \p Predicate.
   std::optional<SliceEntry> lookup(const llvm::Instruction *Predicate) const;
   unsigned numPredicates() const { return Predicates.size(); }
-  /// The way from a predicate to its nearest exposing statement: the one by
-  /// which its distance came about.
+  /// The path from a predicate to its nearest exposing statement: the one that
+  /// determined its distance.
   llvm::SmallVector<SliceStep, 16> pathOf(const SliceEntry &E) const;
 
 private:

@@ -13,15 +13,15 @@ namespace tpc {
 
 AnalysisKey ExternCallFinder::Key;
 
-/// A publisher or client that got a name: where it is kept, and the name.
+/// A publisher or client that got a name: where it is stored, and the name.
 struct NamedObject {
   Location Where;
   std::string Topic;
 };
 
-/// The publishers and clients of \p M. `advertise` gives its result to a
-/// temporary or variable; from a temporary, a call that is handed both it and
-/// another object (the assignment) passes the name on.
+/// The publishers and clients of \p M. `advertise` returns its result into a
+/// temporary or variable. From a temporary, the assignment passes the name on:
+/// a call that gets both the temporary and another object.
 static SmallVector<NamedObject, 0> namedObjects(Module &M,
                                                 const RuleMatches &Rules,
                                                 PointsTo &Pointers,
@@ -49,7 +49,7 @@ static SmallVector<NamedObject, 0> namedObjects(Module &M,
   return Found;
 }
 
-/// The one topic of \p Object; empty where there is none or more than one.
+/// The only topic of \p Object; empty if there is none or more than one.
 static std::string topicOf(const Value *Object, ArrayRef<NamedObject> Named,
                            PointsTo &Pointers) {
   std::string Topic;

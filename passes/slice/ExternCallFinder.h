@@ -1,7 +1,7 @@
 //===- ExternCallFinder.h - The exposing statements -----------------------===//
 //
-// Thesis A.8: the calls through which a node's inner state becomes visible.
-// Found by the rules; the topic is looked up where a constant names it.
+// Thesis A.8: the calls that make the internal state of a node visible. The
+// rules list them; the topic is found if a constant names it.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_EXTERNCALLFINDER_H
@@ -16,7 +16,7 @@ namespace tpc {
 struct ExposingStatement {
   llvm::CallBase *Call;
   const Rule *Row;
-  std::string Topic; ///< empty where no constant names it
+  std::string Topic; ///< empty if no constant names it
 };
 
 class ExternCallFinder : public llvm::AnalysisInfoMixin<ExternCallFinder> {

@@ -16,7 +16,7 @@ static double seconds() {
   return static_cast<double>(T.tv_sec) + static_cast<double>(T.tv_nsec) * 1e-9;
 }
 
-/// Memory that the process has in use, in MiB; 0 where /proc is not there.
+/// Memory that the process uses, in MiB; 0 without /proc.
 static double memory() {
   double Pages = 0;
   if (std::FILE *File = std::fopen("/proc/self/statm", "r")) {
@@ -38,10 +38,10 @@ Budget::~Budget() { Current = Outer; }
 bool Budget::look() {
   if (MaxSeconds && seconds() - SecondsBefore > MaxSeconds)
     Why = "the analysis takes more than " + std::to_string(MaxSeconds) +
-          " s (more: -tpc-max-seconds, TPC_MAX_SECONDS in CMake)";
+          " s (-tpc-max-seconds raises the limit, TPC_MAX_SECONDS in CMake)";
   else if (MaxMemory && memory() - MemoryBefore > MaxMemory)
     Why = "the analysis takes more than " + std::to_string(MaxMemory) +
-          " MiB (more: -tpc-max-memory, TPC_MAX_MEMORY in CMake)";
+          " MiB (-tpc-max-memory raises the limit, TPC_MAX_MEMORY in CMake)";
   return Spent = !Why.empty();
 }
 

@@ -1,8 +1,9 @@
-//===- Budget.h - What an analysis may take of the machine ----------------===//
+//===- Budget.h - Limits on time and memory -------------------------------===//
 //
-// Free of LLVM. An analysis asks in its loops whether its budget is spent, and
-// ends them with what it has if so; LinkUnit then throws the findings away and
-// leaves the unit as it was. What one call into LLVM takes is not asked for.
+// Does not depend on LLVM. The loops of an analysis ask whether the budget is
+// spent and, if so, end with what they have; LinkUnit then discards the
+// findings and leaves the link unit unchanged. A single call into LLVM is not
+// interrupted.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_BUDGET_H
@@ -13,25 +14,25 @@
 
 namespace tpc {
 
-/// The budget of the analyses that this thread runs while it lives.
+/// The budget of the analyses that this thread runs during its lifetime.
 class Budget {
 public:
-  /// \p MaxSeconds of this thread's processor time, so that a busy machine
-  /// takes nothing away, and \p MaxMemory MiB more than the process has now;
+  /// \p MaxSeconds of processor time of this thread, so that a busy machine
+  /// makes no difference, and \p MaxMemory MiB more than the process uses now;
   /// 0 is no limit.
   Budget(unsigned MaxSeconds, unsigned MaxMemory);
   ~Budget();
   Budget(const Budget &) = delete;
   Budget &operator=(const Budget &) = delete;
 
-  /// True once the thread's budget is spent; false where it has none. Made to
-  /// be called in loops: the clock is looked at now and then.
+  /// True once the budget of the thread is spent; false if it has none. Cheap
+  /// enough for loops: reads the clock only now and then.
   static bool isSpent() {
     return Current && (Current->Spent ||
                        (++Current->Asked % LookEvery == 0 && Current->look()));
   }
 
-  /// What was spent, for a message; empty as long as there is something left.
+  /// Which limit was exceeded, as a message; empty if none was.
   std::string why();
 
 private:

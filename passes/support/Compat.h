@@ -1,4 +1,4 @@
-//===- Compat.h - What differs between the LLVM releases we build with ----===//
+//===- Compat.h - Differences between versions of LLVM --------------------===//
 //
 // LLVM 19 and 22. Nothing outside this file asks for the version.
 //
@@ -18,7 +18,7 @@
 
 namespace tpc {
 
-/// The records that say which of the source's variables \p V is.
+/// The debug records that say which variable of the source \p V is.
 inline llvm::SmallVector<llvm::DbgVariableRecord *, 2>
 variableRecords(llvm::Value *V) {
   llvm::SmallVector<llvm::DbgVariableRecord *, 2> Records;
@@ -31,7 +31,7 @@ variableRecords(llvm::Value *V) {
   return Records;
 }
 
-/// Of an argument: nothing keeps it after the call.
+/// For an argument: no pointer to it is kept after the call.
 inline llvm::Attribute noCapture(llvm::LLVMContext &Ctx) {
 #if LLVM_VERSION_MAJOR >= 22
   return llvm::Attribute::getWithCaptureInfo(Ctx, llvm::CaptureInfo::none());

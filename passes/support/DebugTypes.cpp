@@ -50,7 +50,7 @@ const DIType *DebugTypes::dereferenced(const DIType *T) {
   }
 }
 
-/// The element of an array, of whatever dimension; else \p T.
+/// The element type of an array of any dimension; otherwise \p T.
 static const DIType *element(const DIType *T) {
   T = DebugTypes::plain(T);
   const auto *Array = dyn_cast_or_null<DICompositeType>(T);
@@ -66,7 +66,7 @@ const DIDerivedType *DebugTypes::memberAt(const DICompositeType *Class,
     if (!Member || Member->isStaticMember() ||
         Member->getOffsetInBits() != Bits)
       continue;
-    // An empty base class shares its place with what follows it.
+    // An empty base class shares its offset with the next member.
     const auto *Base = dyn_cast_or_null<DICompositeType>(
         Member->getTag() == dwarf::DW_TAG_inheritance
             ? plain(Member->getBaseType())
@@ -78,7 +78,7 @@ const DIDerivedType *DebugTypes::memberAt(const DICompositeType *Class,
   return nullptr;
 }
 
-/// True where \p Class and \p Struct have one name, scopes apart.
+/// True if \p Class and \p Struct have the same name, ignoring scopes.
 static bool isNamedAs(const DICompositeType &Class, const StructType &Struct) {
   StringRef Name = plainClassName(Struct).rsplit(':').second;
   if (Name.empty())
@@ -98,8 +98,8 @@ const DICompositeType *DebugTypes::asStruct(const DIType *T,
   while (Class) {
     uint64_t Size = Class->getSizeInBits();
     if (Size == Bits || (Unpadded && Size >= Bits && Size < Bits + 64)) {
-      // The name decides where it can; the linker may have taken that of
-      // another class that looks alike.
+      // If possible, the name decides; the linker may have merged the type with
+      // that of another class that looks alike.
       if (isNamedAs(*Class, *Struct))
         return Class;
       if (!Fits)
@@ -129,7 +129,8 @@ static std::string scopedName(const DICompositeType &Class) {
 StructType *DebugTypes::classOf(const GlobalVariable &Global,
                                 ArrayRef<StructType *> All) {
   uint64_t Size = Layout.getTypeAllocSize(Global.getValueType());
-  // Of a class that nobody looks into, there is only its base class.
+  // If no code accesses the members of a class, the module only has the type of
+  // its base class.
   const auto *Class = dyn_cast_or_null<DICompositeType>(pointee(&Global));
   while (Class && Class->getSizeInBits() == Size * 8) {
     std::string Name = scopedName(*Class);
@@ -147,7 +148,7 @@ StructType *DebugTypes::classOf(const GlobalVariable &Global,
 
 const DIType *DebugTypes::field(const DICompositeType *Class,
                                 StructType *Struct, unsigned Index) const {
-  // A class without its padding can stand for the same with it.
+  // A class without its padding may occur in place of the padded one.
   if (!Class || !Struct->isSized() || Index >= Struct->getNumElements())
     return nullptr;
   const DIDerivedType *Member = memberAt(
@@ -175,8 +176,8 @@ StringRef DebugTypes::fieldName(const DICompositeType *Class,
                                                             : "";
 }
 
-/// Where a struct of C's kind is declared, at file scope; else empty. In C++ it
-/// has an identifier as well.
+/// Where a C struct at file scope is declared; otherwise empty. In C++ it also
+/// has an identifier.
 static std::string declaredAt(const DICompositeType &Class) {
   if (!Class.getFile() || !Class.getLine() ||
       !isa_and_nonnull<DIFile>(Class.getScope() ? Class.getScope()
@@ -188,9 +189,9 @@ static std::string declaredAt(const DICompositeType &Class) {
 }
 
 std::string DebugTypes::identifierOf(const DICompositeType &Class) {
-  // clang leaves it out in the one file that has the class's table of virtual
-  // functions: that of the first of them that is not inline. An instance of a
-  // template has no such file.
+  // Clang omits the identifier in the file that has the vtable of the class,
+  // which is the file of its first virtual function that is not inline. An
+  // instance of a template has no such file.
   if (!Class.getIdentifier().empty() || !Class.getVTableHolder())
     return Class.getIdentifier().str();
   std::string Name;
@@ -212,8 +213,8 @@ unsigned DebugTypes::numberOf(const DICompositeType *Class) {
   unsigned &Number = Numbers[Class];
   if (Number)
     return Number;
-  // Classes with a name across files carry it as their identifier. Those of C
-  // do not, and are the same where a header declares them.
+  // A class that exists across files has an identifier. A C struct has none; it
+  // is the same if the same header declares it.
   SmallVector<StringRef, 2> Names;
   const std::string Identifier = identifierOf(*Class),
                     Place = declaredAt(*Class);
@@ -241,7 +242,8 @@ const DIType *DebugTypes::ofArgument(const Argument &Arg) const {
   if (Arg.hasStructRetAttr())
     return Types.size() ? plain(Types[0]) : nullptr;
   unsigned Hidden = F->hasStructRetAttr() ? 1 : 0;
-  // Objects that go in registers take several arguments: then nothing fits.
+  // If objects are passed in registers, one takes several arguments and the
+  // numbers do not match.
   if (Types.size() == 0 || F->arg_size() - Hidden != Types.size() - 1)
     return nullptr;
   const DIType *T = Types[Arg.getArgNo() - Hidden + 1];
@@ -274,7 +276,7 @@ const DIType *DebugTypes::ofElement(const GEPOperator &GEP) {
   return T;
 }
 
-/// The scalar at the beginning of what is of type \p T.
+/// The scalar at the beginning of an object of type \p T.
 const DIType *DebugTypes::firstScalar(const DIType *T) const {
   T = element(T);
   for (unsigned Depth = 0; Depth < 16; ++Depth) {
@@ -287,17 +289,18 @@ const DIType *DebugTypes::firstScalar(const DIType *T) const {
   return T;
 }
 
-/// What \p Local, no variable of the source, is to those who are handed it, be
-/// they inlined or not: a class of its name, or else of its size.
+/// The type of \p Local, which is not a variable of the source, according to
+/// the functions that get a pointer to it, inlined or not: a class with its
+/// name, otherwise with its size.
 const DIType *DebugTypes::ofTemporary(const AllocaInst &Local) const {
   auto *Struct = dyn_cast<StructType>(Local.getAllocatedType());
   if (!Struct)
     return nullptr;
   const DICompositeType *Fits = nullptr;
-  // True where it has the name.
+  // True if the name matches.
   auto Take = [&](const DIType *T) {
     const DICompositeType *Class = asStruct(T, Struct);
-    // A base class is not all of it.
+    // A base class is not the whole object.
     if (!Class || Class != T)
       return false;
     bool IsNamed = isNamedAs(*Class, *Struct);
@@ -340,11 +343,11 @@ const DIType *DebugTypes::find(const Value *Pointer) {
                          : plain(Infos.front()->getVariable()->getType());
   }
   if (const auto *Load = dyn_cast<LoadInst>(Pointer)) {
-    // What is loaded from an object is the scalar at its beginning.
+    // The pointer that is loaded is the scalar at the beginning of the object.
     return dereferenced(firstScalar(pointee(Load->getPointerOperand())));
   }
   if (const auto *Call = dyn_cast<CallBase>(Pointer)) {
-    // What `new` makes is written down there.
+    // The call of `new` is annotated with the type.
     if (const auto *Made =
             dyn_cast_or_null<DIType>(Call->getMetadata("heapallocsite")))
       return plain(Made);
@@ -352,7 +355,7 @@ const DIType *DebugTypes::find(const Value *Pointer) {
     const DISubprogram *SP = Callee ? Callee->getSubprogram() : nullptr;
     if (!SP || !SP->getType() || SP->getType()->getTypeArray().size() == 0)
       return nullptr;
-    // An iterator may be returned as the pointer that is in it.
+    // An iterator may be returned as the pointer inside it.
     return dereferenced(firstScalar(SP->getType()->getTypeArray()[0]));
   }
   if (const auto *Phi = dyn_cast<PHINode>(Pointer)) {
@@ -367,7 +370,7 @@ const DIType *DebugTypes::find(const Value *Pointer) {
 }
 
 const DIType *DebugTypes::pointee(const Value *Pointer) {
-  // A way round a loop finds null here, and goes on without.
+  // A cycle finds null here and is ignored.
   auto [It, New] = Known.try_emplace(Pointer, nullptr);
   if (!New)
     return It->second;

@@ -1,8 +1,8 @@
 //===- DebugTypes.h - The source's classes, from debug information --------===//
 //
-// When files are linked, LLVM makes one type of all classes that look alike:
-// a pair of doubles is a pair of doubles. The classes of the source survive in
-// the debug information. This finds the one that a pointer leads to.
+// When files are linked, LLVM merges classes that look alike into one type: any
+// pair of doubles has the same type. The debug information still has the
+// classes of the source. This finds the one that a pointer leads to.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_DEBUGTYPES_H
@@ -24,34 +24,35 @@ public:
 
   /// \p T without typedefs and qualifiers.
   static const llvm::DIType *plain(const llvm::DIType *T);
-  /// What a pointer or reference of type \p T leads to; null for other types.
+  /// The type that a pointer or reference of type \p T leads to; null for other
+  /// types.
   static const llvm::DIType *dereferenced(const llvm::DIType *T);
 
-  /// The type of what \p Pointer points to; null where that is not known.
+  /// The type of the object that \p Pointer points to; null if it is not known.
   const llvm::DIType *pointee(const llvm::Value *Pointer);
 
-  /// \p T, or the base class at its beginning, that LLVM lays out as \p Struct;
-  /// null where neither is.
+  /// \p T, or the base class at its beginning, whichever LLVM lays out as
+  /// \p Struct; null if neither is.
   const llvm::DICompositeType *asStruct(const llvm::DIType *T,
                                         llvm::StructType *Struct) const;
 
-  /// The class of \p All, types of a module, that \p Global is an object of;
-  /// null where none is.
+  /// The class of \p All, the types of a module, that \p Global is an object
+  /// of; null if there is none.
   llvm::StructType *classOf(const llvm::GlobalVariable &Global,
                             llvm::ArrayRef<llvm::StructType *> All);
 
-  /// The type of field \p Index of \p Class, laid out as \p Struct.
+  /// The type of field \p Index of \p Class, which has the layout \p Struct.
   const llvm::DIType *field(const llvm::DICompositeType *Class,
                             llvm::StructType *Struct, unsigned Index) const;
-  /// True where that field is const.
+  /// True if that field is const.
   bool isConst(const llvm::DICompositeType *Class, llvm::StructType *Struct,
                unsigned Index) const;
-  /// Its name; empty for a base class.
+  /// The name of that field; empty for a base class.
   llvm::StringRef fieldName(const llvm::DICompositeType *Class,
                             llvm::StructType *Struct, unsigned Index) const;
 
-  /// The name of \p Class across files, as it is mangled: `_ZTS4Node`; empty
-  /// where it has none, as in an unnamed namespace.
+  /// The mangled name of \p Class, which is the same in all files: `_ZTS4Node`.
+  /// Empty if it has none, as in an unnamed namespace.
   static std::string identifierOf(const llvm::DICompositeType &Class);
   /// A number for \p Class, the same in all files; 0 for null.
   unsigned numberOf(const llvm::DICompositeType *Class);

@@ -7,10 +7,11 @@
 
 namespace tpc {
 
-/// The functions that \p M defines and that can run. What is only there to be
-/// inlined, and is so only above -O0 (`available_externally`), is another
-/// module's: without it the findings are the same at every level. What nobody
-/// uses and the linker may leave out never runs.
+/// The functions that \p M defines and that can run. Left out are definitions
+/// that only exist for inlining, which is so only above -O0
+/// (`available_externally`): they belong to another module, and without them
+/// the findings are the same at every level. Also left out are unused functions
+/// that the linker may discard: they never run.
 inline auto definedFunctions(llvm::Module &M) {
   return llvm::make_filter_range(M, [](const llvm::Function &F) {
     return !F.isDeclarationForLinker() &&

@@ -15,8 +15,8 @@ using namespace llvm;
 
 namespace tpc {
 
-/// Where the stack has run out there is none left for a signal's handler: it
-/// gets its own, unless this thread has one.
+/// Gives this thread an alternate signal stack, unless it has one: after a
+/// stack overflow a signal handler needs it.
 class SignalStack {
 public:
   SignalStack() {
@@ -51,7 +51,8 @@ bool runGuarded(function_ref<void()> F) {
   struct sigaction OnStack = Before;
   OnStack.sa_flags |= SA_ONSTACK;
   sigaction(SIGSEGV, &OnStack, nullptr);
-  // LLVM's own way to end at a fatal error prints a bug report and may exit.
+  // By default LLVM handles a fatal error by printing a bug report, and may
+  // exit.
   ScopedFatalErrorHandler Fatal(
       [](void *, const char *, bool) { std::abort(); });
   CrashRecoveryContext Context;
@@ -60,7 +61,7 @@ bool runGuarded(function_ref<void()> F) {
   return Survived;
 }
 
-/// Takes stack until there is none.
+/// Uses up the stack.
 static unsigned overflow(volatile unsigned Depth) {
   volatile char Frame[4096] = {};
   return Depth ? overflow(Depth + 1) + Frame[Depth % sizeof(Frame)] : 0;
@@ -80,7 +81,7 @@ void fail(Failure Kind) {
   case Failure::Fatal:
     report_fatal_error("injected");
   case Failure::Allocation:
-    // More than any machine has.
+    // No machine has that much.
     Memory.emplace_back(size_t(1) << 60);
     return;
   case Failure::Memory:

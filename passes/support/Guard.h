@@ -1,4 +1,4 @@
-//===- Guard.h - A failure inside is only a failure of what runs inside ---===//
+//===- Guard.h - Survives a crash of the analysis -------------------------===//
 #ifndef TPC_GUARD_H
 #define TPC_GUARD_H
 
@@ -9,15 +9,15 @@ namespace tpc {
 /// Ways to fail, for tests.
 enum class Failure { None, Crash, Overflow, Fatal, Allocation, Memory, Time };
 
-/// Fails in this way; Memory and Time until the budget is spent.
+/// Fails in this way; Memory and Time run until the budget is spent.
 void fail(Failure Kind);
 
-/// Runs \p F; false where it crashed, ran out of stack or memory, or met what
-/// LLVM takes for an internal error (assertions, report_fatal_error). What \p F
-/// had made by then is lost: nothing of it may be used, nor destroyed.
+/// Runs \p F; false if it crashed, ran out of stack or memory, or hit an
+/// internal error of LLVM (assertion, report_fatal_error). After a failure,
+/// nothing that \p F made may be used or destroyed.
 ///
-/// An LLVM without assertions behaves as it likes where one would not hold, and
-/// a call that does not come back is not ended.
+/// If LLVM was built without assertions, a violated assertion has undefined
+/// behaviour. A call that never returns is not ended.
 bool runGuarded(llvm::function_ref<void()> F);
 
 } // namespace tpc

@@ -12,8 +12,8 @@ using namespace llvm;
 
 namespace tpc {
 
-/// \p Text without what stands between angle brackets. `operator<` and its
-/// kin are left whole: their bracket has no partner before the parameters.
+/// \p Text without everything between angle brackets. `operator<` and the like
+/// are kept: their bracket has no partner before the parameters.
 static std::string withoutTemplateArguments(StringRef Text) {
   std::string Out;
   int Depth = 0;
@@ -33,7 +33,7 @@ static std::string withoutTemplateArguments(StringRef Text) {
   return Out;
 }
 
-/// Owns what a demangler gives.
+/// Takes ownership of a string from the demangler.
 static std::string taken(char *Text) {
   std::string S = Text ? Text : "";
   std::free(Text);
@@ -52,7 +52,7 @@ std::string qualifiedName(StringRef Mangled) {
 }
 
 std::string functionName(const Function &F) {
-  // The debug information keeps the name of what was cloned.
+  // The debug information keeps the name of the function that was cloned.
   const DISubprogram *SP = F.getSubprogram();
   StringRef Linkage = SP ? SP->getLinkageName() : "";
   return demangle(Linkage.empty() ? F.getName() : Linkage);
@@ -97,7 +97,7 @@ std::string plainType(StringRef Type) {
   return Plain == "std::__cxx11::basic_string" ? "std::string" : Plain;
 }
 
-/// What stands between the first angle brackets of \p Text, up to a comma.
+/// The text between the first angle brackets of \p Text, up to a comma.
 static std::string templateArgument(StringRef Text) {
   size_t Begin = Text.find('<');
   if (Begin == StringRef::npos)
@@ -126,7 +126,7 @@ std::string resultType(const Function &F) {
   std::string Text;
   if (!Demangler.partialDemangle(Name.c_str()) && Demangler.isFunction()) {
     Text = taken(Demangler.getFunctionReturnType(nullptr, nullptr));
-    // What the compiler was to find out is what the template was made for.
+    // If the result type is deduced, the template argument tells it.
     if (StringRef(Text).contains("auto")) {
       std::string Whole = taken(Demangler.getFunctionName(nullptr, nullptr));
       std::string Scope =

@@ -1,4 +1,4 @@
-//===- Print.h - How the printers write a place ---------------------------===//
+//===- Print.h - Prints places --------------------------------------------===//
 #ifndef TPC_PRINT_H
 #define TPC_PRINT_H
 
@@ -10,7 +10,7 @@
 
 namespace tpc {
 
-/// ` at line:column`, or nothing where \p I has no debug location.
+/// ` at line:column`, or an empty string if \p I has no debug location.
 inline std::string place(const llvm::Instruction &I) {
   const llvm::DebugLoc &Loc = I.getDebugLoc();
   if (!Loc)

@@ -1,4 +1,4 @@
-//===- SourcePath.h - Where a file of the source is -----------------------===//
+//===- SourcePath.h - Paths of source files -------------------------------===//
 #ifndef TPC_SOURCEPATH_H
 #define TPC_SOURCEPATH_H
 
@@ -10,7 +10,8 @@
 
 namespace tpc {
 
-/// The absolute path of \p File, without dots; empty for none.
+/// The absolute path of \p File, without `.` and `..`; empty if \p File is
+/// null.
 inline std::string pathOf(const llvm::DIFile *File) {
   if (!File)
     return "";

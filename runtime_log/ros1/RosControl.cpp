@@ -25,24 +25,25 @@ namespace tpc {
 static constexpr int64_t Ms = 1'000'000;
 static constexpr int64_t SoonNs = 20 * Ms;
 static constexpr int64_t LateNs = 250 * Ms;
-/// So many turns it is looked often whether roscpp is started; then seldom.
-static constexpr int SoonTurns = 500;
+/// For this many polls, checks often whether roscpp has started; after that
+/// seldom.
+static constexpr int SoonPolls = 500;
 static constexpr std::chrono::seconds FirstRetry{1}, LastRetry{60};
 static const char *const Service = "~tpc/reload";
 
 namespace {
 
-/// The settings of this process as ROS has them. Its members are used by the
-/// thread that asks the master, except where they are atomic.
+/// The settings of this process in ROS. Its members are used by the thread that
+/// asks the master, unless they are atomic.
 class Control {
 public:
   static Control &instance() {
-    // Never destroyed: threads may look at it until the very end.
+    // Never destroyed: threads may use it until the very end.
     static Control &Only = *new Control;
     return Only;
   }
 
-  int64_t turn();
+  int64_t poll();
 
 private:
   using Clock = std::chrono::steady_clock;
@@ -62,13 +63,13 @@ private:
   std::atomic<bool> Failed{false};
   std::atomic<Clock::rep> RetryAt{0};
   std::chrono::seconds Retry = FirstRetry;
-  int Turns = 0; // of the helper thread
+  int Polls = 0; // by the helper thread
 };
 
 } // namespace
 
-/// What a value of the parameter server is as a word of the environment. YAML
-/// takes `off` for false.
+/// Converts a value of the parameter server to the text of a variable of the
+/// environment. YAML reads `off` as false.
 static bool textOf(const std::string &Name, XmlRpc::XmlRpcValue &Value,
                    std::string &Text) {
   switch (Value.getType()) {
@@ -95,7 +96,7 @@ static bool textOf(const std::string &Name, XmlRpc::XmlRpcValue &Value,
   }
 }
 
-/// The one setting \p Name is in \p New what it is in \p Now.
+/// Sets the setting \p Name in \p New back to its value in \p Now.
 static void keep(Config &New, const Config &Now, const std::string &Name) {
   if (Name == "sink")
     New.Sink = Now.Sink;
@@ -123,7 +124,7 @@ void Control::takeFrom(const char *Place, Config &New, const Config &Now,
     return;
   if (Found.getType() != XmlRpc::XmlRpcValue::TypeStruct) {
     Complaints.push_back("the parameter " + Folder +
-                         " is no folder of parameters; left as it was");
+                         " is not a namespace of parameters and is ignored");
     return;
   }
   for (auto &[Name, Value] : Found) {
@@ -138,17 +139,17 @@ void Control::takeFrom(const char *Place, Config &New, const Config &Now,
     if (textOf(Name, Value, Text) && parse(New, Name, Text, Why))
       continue;
     keep(New, Now, Name);
-    Complaints.push_back("the parameter " + Parameter + " is left out: " + Why);
+    Complaints.push_back("the parameter " + Parameter + " is ignored: " + Why);
   }
 }
 
 Control::Texts Control::takeParameters() {
   Texts Complaints;
-  // Asked first, because what follows does not tell a parameter that is not
-  // set from a master that does not answer.
+  // Asked first, because the calls below cannot distinguish a parameter that is
+  // not set from a master that does not answer.
   if (!ros::master::check()) {
-    Complaints.push_back("the ROS master does not answer; the settings are "
-                         "left as they were");
+    Complaints.push_back("the ROS master does not answer; the settings "
+                         "stay as they are");
     return Complaints;
   }
   const Config Now = current();
@@ -156,7 +157,8 @@ Control::Texts Control::takeParameters() {
   takeFrom("/tpc", New, Now, Complaints);
   takeFrom("~tpc", New, Now, Complaints);
   if (!(New == Now) && !apply(New))
-    Complaints.push_back("what is set cannot be had; left as it was");
+    Complaints.push_back(
+        "the settings cannot be applied; the previous ones stay");
   return Complaints;
 }
 
@@ -175,8 +177,9 @@ bool Control::reload(std_srvs::Trigger::Request &,
 void Control::begin() {
   if (!ros::master::check()) {
     if (!Failed)
-      warn("the ROS master does not answer: parameters and " +
-           ros::names::resolve(Service) + " come when it does");
+      warn("the ROS master does not answer yet: its parameters are not read, "
+           "and " +
+           ros::names::resolve(Service) + " is not advertised");
     RetryAt = (Clock::now() + Retry).time_since_epoch().count();
     Retry = std::min(2 * Retry, LastRetry);
     Failed = true;
@@ -191,24 +194,24 @@ void Control::begin() {
       ros::names::resolve(Service),
       [this](auto &Request, auto &Answer) { return reload(Request, Answer); });
   Options.callback_queue = &Queue;
-  // False is said by roscpp itself, and will not change.
+  // roscpp itself logs a failure, and another try would fail too.
   ros::ServiceManager::instance()->advertiseService(Options);
   Served = true;
 }
 
-int64_t Control::turn() {
+int64_t Control::poll() {
   RosUse Use;
   if (!Use)
     return -1;
   if (!rosIsUp()) {
     // A node that was shut down may start again, and then has no services.
     Served = false;
-    return Turns < SoonTurns ? (++Turns, SoonNs) : LateNs;
+    return Polls < SoonPolls ? (++Polls, SoonNs) : LateNs;
   }
   if (!Served) {
     if (Failed && Clock::now().time_since_epoch().count() < RetryAt)
       return LateNs;
-    // The thread wakes the helper when it is through.
+    // The thread wakes the helper when it is done.
     askMaster([this] {
       if (!Served)
         begin();
@@ -221,9 +224,9 @@ int64_t Control::turn() {
   return SoonNs;
 }
 
-int64_t rosTurn() {
+int64_t pollRos() {
   try {
-    return Control::instance().turn();
+    return Control::instance().poll();
   } catch (...) {
     return LateNs;
   }
@@ -238,7 +241,7 @@ const char *rosNodeName() {
   return Name.c_str();
 }
 
-/// Whether ros::Time was initialised. Until then it says that it is simulated.
+/// Whether ros::Time is initialised. Until then it claims to be simulated.
 static bool timeIsKnown() {
   static std::atomic<bool> Known{false};
   if (Known)
@@ -257,7 +260,7 @@ static bool timeIsKnown() {
 bool rosTimeIsSimulated() { return timeIsKnown() && ros::Time::isSimTime(); }
 
 int64_t rosNow() {
-  // A forked child gets no /clock, and the lock of the time may be closed.
+  // A forked child gets no /clock, and the lock of the time may stay locked.
   static std::atomic<int64_t> Last{0};
   if (!timeIsKnown())
     return 0;

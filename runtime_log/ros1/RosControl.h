@@ -6,27 +6,27 @@
 
 namespace tpc {
 
-/// Looks after ROS, in the helper thread: once roscpp is started, takes over
-/// the parameters and advertises `~tpc/reload`; answers what was asked of it.
+/// Called by the helper thread. Once roscpp has started, applies the parameters
+/// and advertises `~tpc/reload`; answers requests.
 ///
-/// \returns after how many nanoseconds it is to be called again, or -1: only
-/// when wakeHelper() was called. Never throws.
-int64_t rosTurn();
+/// \returns after how many nanoseconds to call it again; -1: only after
+/// wakeHelper() was called. Never throws.
+int64_t pollRos();
 
 /// The process ends: withdraws the service.
 void rosEnd();
 
-/// Whether this process was forked from one in which roscpp was initialised:
-/// its threads are not here, and their locks may never be opened.
+/// Whether this process was forked from one that had initialised roscpp: the
+/// threads of roscpp are missing here, and its locks may stay locked.
 bool forkedFromNode();
 
-/// The name of this process's node, empty where it is not known (yet).
+/// The name of this process's node; empty if it is not known (yet).
 const char *rosNodeName();
 
 /// Whether roscpp's time is simulated.
 bool rosTimeIsSimulated();
 
-/// roscpp's time in nanoseconds, 0 where it is not known yet.
+/// roscpp's time in nanoseconds; 0 if it is not known yet.
 int64_t rosNow();
 
 } // namespace tpc

@@ -36,7 +36,7 @@ static void inChild() {
     Forked = true;
 }
 
-// When this library is loaded no second thread can be in it yet.
+// While this library is loaded, no second thread can be in it yet.
 static const int Watched = pthread_atfork(nullptr, nullptr, inChild);
 
 RosUse::RosUse() : Held(false) {
@@ -59,8 +59,8 @@ void warnOfFork(const char *Topic) {
   static std::atomic<bool> Said{false};
   if (!Said.exchange(true))
     warn("process " + std::to_string(getpid()) +
-         " was forked from a node: its reports are not on " + Topic +
-         "; the sink file has them");
+         " was forked from a node: its reports do not reach " + Topic +
+         "; the sink file records them");
 }
 
 bool rosIsUp() {
@@ -71,21 +71,21 @@ bool rosIsUp() {
   }
   if (Up)
     return true;
-  // Asking for one of roscpp's singletons makes it, and they are destroyed in
-  // the opposite order: ros::start() is to make its first ones before.
+  // Asking for a singleton of roscpp creates it, and singletons are destroyed
+  // in the opposite order: ros::start() must create its own first.
   const auto Now = std::chrono::steady_clock::now().time_since_epoch().count();
   int64_t Unset = 0;
   StartedAt.compare_exchange_strong(Unset, Now);
   if (Now - StartedAt < StartNs)
     return false;
   // ros::isStarted() is true from the beginning of ros::start(), when neither
-  // the addresses of this node nor its threads are there yet. This service is
-  // the last thing that every node makes in it that can be seen from outside.
+  // the addresses of this node nor its threads exist. This service is the last
+  // thing visible from outside that every node creates in ros::start().
   if (!ros::ServiceManager::instance()->lookupServicePublication(
           ros::names::resolve("~set_logger_level")))
     return false;
-  // Registered now, it runs before the destructors of all that ros::start()
-  // made: handlers run in the opposite order.
+  // Registered now, it runs before the destructors of everything that
+  // ros::start() created: handlers run in the opposite order.
   static const int Registered = std::atexit([] {
     endRuntime();
     endRosUse();
@@ -111,14 +111,14 @@ bool askMaster(std::function<void()> Job) {
       } catch (const std::exception &Error) {
         warn(std::string("talking to the ROS master failed: ") + Error.what());
       } catch (...) {
-        // What xmlrpcpp throws is no std::exception.
+        // xmlrpcpp throws exceptions that are not derived from std::exception.
         warn("talking to the ROS master failed");
       }
       Asking = false;
       wakeHelper();
     }).detach();
   } catch (const std::exception &) {
-    // No thread to be had; there will be another turn.
+    // No thread is available; the next poll tries again.
     Taken = Asking = false;
   }
   pthread_sigmask(SIG_SETMASK, &Before, nullptr);

@@ -1,9 +1,9 @@
-//===- RosLife.h - When roscpp may be touched -----------------------------===//
+//===- RosLife.h - When roscpp may be used --------------------------------===//
 //
 // This library may be called before ros::init, while roscpp starts, after
-// ros::shutdown, while the process ends and in a forked child. roscpp's
-// singletons are safe to use between its start and the end of the process, and
-// never in a child of a process in which it was initialised.
+// ros::shutdown, while the process ends and in a forked child. The singletons
+// of roscpp are safe to use between its start and the end of the process, and
+// never in a child of a process that had initialised roscpp.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_ROSLIFE_H
@@ -17,8 +17,8 @@
 
 namespace tpc {
 
-/// While one of these is held (and true) the process does not get to the
-/// destructors of roscpp's singletons, except after half a second of waiting.
+/// While one of these exists (and is true), the process does not destroy the
+/// singletons of roscpp, or does so only after waiting for half a second.
 class RosUse {
 public:
   RosUse();
@@ -31,24 +31,25 @@ private:
   bool Held;
 };
 
-/// Whether roscpp is started, its start is through, and it is not shutting
-/// down. To be asked with a RosUse held.
+/// Whether roscpp has started completely and is not shutting down. Call it
+/// while holding a RosUse.
 bool rosIsUp();
 
-/// Says, once in a process, that for this reason its reports are not on \p
-/// Topic. Not at its end: such a process has to leave by _exit.
+/// Warns, once per process, that its reports are not on \p Topic because it was
+/// forked from a node. Not at its end, because such a process has to leave by
+/// _exit.
 void warnOfFork(const char *Topic);
 
-/// Runs what talks to the master, which may take for ever, in a thread of its
-/// own with a RosUse held; one job at a time.
+/// Runs a job that talks to the master, which may take for ever, in a thread of
+/// its own that holds a RosUse; one job at a time.
 ///
-/// \returns whether the job was taken.
+/// \returns whether the job was accepted.
 bool askMaster(std::function<void()> Job);
 
-/// Nothing touches roscpp any more. Called again it does nothing.
+/// No code may use roscpp after this call. A second call does nothing.
 void endRosUse();
 
-/// A queue of roscpp's callbacks that wakes the helper thread.
+/// A queue of roscpp callbacks that wakes the helper thread.
 class WakingQueue : public ros::CallbackQueue {
 public:
   void addCallback(const ros::CallbackInterfacePtr &Callback,

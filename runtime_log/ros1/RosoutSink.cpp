@@ -11,7 +11,7 @@
 namespace tpc {
 namespace {
 
-/// The thesis's sink. roscpp does the rest: the stamp, the queue, the console.
+/// The sink of the thesis. roscpp does the rest: time stamp, queue, console.
 class RosoutSink : public Sink {
 public:
   void take(const Report &R) override {
@@ -41,9 +41,9 @@ public:
   }
 
 private:
-  /// Whether roscpp's console still takes messages; what it would not is
-  /// counted. In a child that was forked from a node the thread that empties
-  /// its queue is missing: messages would pile up until the memory is full.
+  /// Whether roscpp's console still takes messages; counts those that it would
+  /// not. In a child that was forked from a node, the thread that empties its
+  /// queue is missing: messages would pile up until the memory is full.
   bool reaches(uint64_t Evaluations) {
     if (forkedFromNode()) {
       warnOfFork("/rosout");

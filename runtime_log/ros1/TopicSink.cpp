@@ -1,9 +1,9 @@
 //===- TopicSink.cpp ------------------------------------------------------===//
 //
-// Reports wait, as bytes, in a store of blocks until the helper thread makes
-// messages of them. roscpp keeps what a subscriber does not take in time in a
-// queue of its own, and drops the oldest message when that is full: the number
-// of the first report, which each message has, shows this to the reader.
+// Reports wait as bytes in a store of blocks until the helper thread makes
+// messages of them. If a subscriber is too slow, roscpp queues messages and,
+// when the queue is full, drops the oldest. A reader notices this because each
+// message has the number of its first report.
 //
 //===----------------------------------------------------------------------===//
 #include "Clock.h"
@@ -39,19 +39,20 @@ constexpr size_t MessageBytes = 64 * 1024;
 /// Messages that wait for a slow subscriber: 100 seconds at five a second, and
 /// at most 32 MiB.
 constexpr uint32_t QueueMessages = 512;
-/// Five messages a second and node, a little less than so many of the helper's
-/// turns: with a turn each, a node that reports 50 times a second would send a
-/// message for each report.
+/// The time between two messages: five a second for each node, with some
+/// allowance for the time between two polls. If every poll sent a message, a
+/// node that reports 50 times a second would send one for each report.
 constexpr int64_t BatchNs = 190'000'000;
-/// What roscpp's thread gets to write the last messages.
+/// How long roscpp's thread gets to write the last messages.
 constexpr std::chrono::milliseconds LastMoment{50};
 /// How long the first message waits for all subscribers that the master knows:
-/// each takes another time to connect, and all are to have everything.
+/// each takes a different time to connect, and all of them shall get
+/// everything.
 constexpr int64_t GatherNs = 1'000'000'000;
 constexpr int64_t RetryNs = 2'000'000'000;
 
-/// Where roscpp puts what is to be done when a subscriber comes: nothing is,
-/// but the sink looks for subscribers again.
+/// roscpp puts here what to do when a subscriber connects. Nothing has to be
+/// done, but the sink looks for subscribers again.
 class Doorbell : public ros::CallbackQueueInterface {
 public:
   explicit Doorbell(std::atomic<bool> &Rung) : Rung(Rung) {}
@@ -73,12 +74,12 @@ public:
   void take(const Report &R) override;
   void take(const Summary &S) override;
   void take(const Dropped &D) override;
-  void turn() override;
-  bool wantsTurns() const override;
+  void poll() override;
+  bool isPolled() const override;
   void end() override;
   std::string status() const override;
 
-  // Around fork(), which may come while another thread holds the lock.
+  // Called around fork(), which may happen while another thread holds the lock.
   void beforeFork() { StoreLock.lock(); }
   void afterFork(bool InChild);
 
@@ -88,12 +89,12 @@ private:
   bool sendWaiting(bool AtOnce);
   void send(ros::Publication &To, const TopicStore::Batch &Batch);
 
-  std::mutex StoreLock; ///< of the next two
+  std::mutex StoreLock; ///< for the next two
   TopicStore Store;
-  int64_t OldestAt = 0; ///< since when something waits
+  int64_t OldestAt = 0; ///< since when something is waiting
 
   std::mutex
-      SendLock; ///< of the next three; never held while the master is asked
+      SendLock; ///< for the next three; never held while the master is asked
   boost::weak_ptr<ros::Publication> Publication;
   uint32_t Expected = 0; ///< subscribers, until GatherUntil
   int64_t GatherUntil = 0;
@@ -120,7 +121,7 @@ TopicSink::TopicSink() {
 
 void TopicSink::afterFork(bool InChild) {
   if (InChild) {
-    // What waits is the parent's to send.
+    // What is waiting belongs to the parent.
     Store = TopicStore();
     Something = false;
   }
@@ -163,11 +164,11 @@ void TopicSink::take(const Dropped &D) {
     keep([&] { Store.add(D); });
 }
 
-bool TopicSink::wantsTurns() const {
+bool TopicSink::isPolled() const {
   return !Advertised || (Subscribed && Something);
 }
 
-/// How many subscribers of a topic the master knows.
+/// The number of subscribers of a topic that the master knows.
 uint32_t subscribersOf(const std::string &Topic) {
   XmlRpc::XmlRpcValue Arguments, Result, State;
   Arguments[0] = ros::this_node::getName();
@@ -179,12 +180,12 @@ uint32_t subscribersOf(const std::string &Topic) {
       if (static_cast<std::string &>(Subscribed[I][0]) == Topic)
         return static_cast<uint32_t>(Subscribed[I][1].size());
   } catch (const XmlRpc::XmlRpcException &) {
-    // A master that tells of its graph in another form.
+    // The master returned its graph in another form.
   }
   return 0;
 }
 
-/// Registers the topic; where the master does not answer, later.
+/// Advertises the topic; tries again later if the master does not answer.
 void TopicSink::advertise() {
   if (!ros::master::check()) {
     RetryAt = Clock::steady() + RetryNs;
@@ -204,19 +205,20 @@ void TopicSink::advertise() {
     GatherUntil = Clock::steady() + GatherNs;
   } else if (!ros::isShuttingDown()) {
     warn("nothing is sent on " + Options.topic +
-         ": this process has it with another type");
+         ": this process uses the topic with another type");
   }
   Advertised = true;
 }
 
-/// Sends what waits if somebody listens: all \p AtOnce, or when it has waited
-/// for a batch's time or fills a message.
+/// Sends what is waiting if somebody listens: everything with \p AtOnce;
+/// otherwise what has waited for the time of a batch or fills a message.
 ///
 /// \returns whether something was sent.
 bool TopicSink::sendWaiting(bool AtOnce) {
   std::lock_guard<std::mutex> Sending(SendLock);
   const auto To = Publication.lock();
-  // In this order: who comes in between is seen by one of the two.
+  // In this order, so that one of the two sees a subscriber that connects in
+  // between.
   Subscribed = false;
   if (!To || To->isDropped() || !To->hasSubscribers())
     return false;
@@ -248,8 +250,8 @@ void TopicSink::send(ros::Publication &To, const TopicStore::Batch &Batch) {
                    Process + ",steady:" + seconds(Clock::steady(), 9) +
                    Part.Text;
     Sent += Part.Reports;
-    // Not by TopicManager::publish, which looks the topic up again and falls
-    // over where it is gone in that moment.
+    // Not TopicManager::publish, which looks up the topic again and crashes if
+    // the topic was removed in that moment.
     ros::SerializedMessage Bytes =
         ros::serialization::serializeMessage(Message);
     To.publish(Bytes);
@@ -257,7 +259,7 @@ void TopicSink::send(ros::Publication &To, const TopicStore::Batch &Batch) {
   ros::PollManager::instance()->getPollSet().signal();
 }
 
-void TopicSink::turn() {
+void TopicSink::poll() {
   RosUse Use;
   if (!Use)
     return;
@@ -269,7 +271,7 @@ void TopicSink::turn() {
       });
     return;
   }
-  // When the node shuts down there is a moment in which its threads still work.
+  // While the node shuts down, its threads still work for a moment.
   sendWaiting(!rosIsUp());
 }
 

@@ -18,21 +18,21 @@ opt = os.path.join(config.tpc_tools, "opt")
 lld = os.path.join(config.tpc_tools, "ld.lld")
 load = f"-load={plugin} -load-pass-plugin={plugin}"
 
-# Longer names come first: a substitution is made wherever its name begins.
+# Longer names come first: lit replaces a name wherever it begins.
 config.substitutions += [
-    # The same as the next one with the real headers of ROS.
+    # The same as the next one, with the real headers of ROS.
     (
         "%compile-real",
         f"{clangxx} -std=c++17 -g -flto=full -fpass-plugin={config.tpc_defer}"
         " -grecord-command-line -c",
     ),
-    # The same for C, of which ROS has no headers.
+    # The same for C; ROS has no headers for C.
     (
         "%compile-c",
         f"{os.path.join(config.tpc_tools, 'clang')} -g -flto=full"
         f" -fpass-plugin={config.tpc_defer} -grecord-command-line -c",
     ),
-    # The compiler as tpc.cmake sets it; the level is the test's own word.
+    # The compiler as tpc.cmake sets it up; each test adds the level.
     (
         "%compile",
         f"{clangxx} -std=c++17 -g -flto=full -fpass-plugin={config.tpc_defer}"

@@ -271,7 +271,8 @@ def test_a_sanitizer_works_in_a_package_that_is_left_alone(tmp_path: Path, place
         debug = "-DCMAKE_BUILD_TYPE=Debug"
         result = build(tmp_path, lists, toolchain(), debug, f"-D{place}=-Wall {flag}")
     (warning,) = result.warnings()
-    assert warning.startswith(f"TPC: p is built without instrumentation: {flag} in {place}")
+    reason = f"{flag} in {place} cannot be combined with TPC"
+    assert warning.startswith(f"TPC: p is built without instrumentation: {reason}")
     assert "heap-buffer-overflow" in result.runs("x").stderr
     assert result.analysed() == []
 
@@ -280,7 +281,7 @@ def test_a_profile_is_written(tmp_path: Path) -> None:
     lists = HEAD + "add_executable(x main.cpp)\n"
     result = build(tmp_path, lists, toolchain(), "-DCMAKE_CXX_FLAGS=--coverage")
     (warning,) = result.warnings()
-    assert "--coverage in CMAKE_CXX_FLAGS" in warning
+    assert "--coverage in CMAKE_CXX_FLAGS cannot be combined with TPC" in warning
     assert result.runs("x").returncode in (0, 1)
     assert [*result.folder.rglob("*.gcda")]
 
@@ -294,7 +295,7 @@ def test_a_sanitizer_that_clang_can_link_stays_with_clang(tmp_path: Path) -> Non
     lists = HEAD + "add_executable(x overflow.cpp)\n"
     result = build(tmp_path, lists, toolchain(), f"-DCMAKE_CXX_FLAGS={trap}")
     (warning,) = result.warnings()
-    assert "-fsanitize=undefined in CMAKE_CXX_FLAGS" in warning
+    assert "-fsanitize=undefined in CMAKE_CXX_FLAGS cannot be combined with TPC" in warning
     assert result.runs("x").returncode < 0
     compilers = [path.read_text("utf-8") for path in result.folder.rglob("CMakeCXXCompiler.cmake")]
     assert 'set(CMAKE_CXX_COMPILER "/usr/bin/clang++-19")' in compilers[0]
@@ -313,7 +314,8 @@ def test_a_sanitizer_that_comes_after_project_is_said_to_be_lost(tmp_path: Path)
         "add_library(y STATIC main.cpp)\n"
     )
     (warning,) = build(tmp_path, lists).warnings()
-    assert warning.startswith("TPC: lost in what is built with TPC: -fsanitize=address of x; ")
+    lost = "-fsanitize=address of x; -DTPC_DISABLE=ON keeps it"
+    assert warning.startswith(f"TPC: has no effect in a build with TPC: {lost}")
     late = 'set(CMAKE_CXX_FLAGS "${CMAKE_CXX_FLAGS} --coverage")\n'
     lists = f"{HEAD}{late}add_library(z STATIC main.cpp)\n"
     (warning,) = build(tmp_path, lists, name="late").warnings()
@@ -420,7 +422,7 @@ def test_a_target_can_be_left_out_and_a_test_is(tmp_path: Path) -> None:
     reasons = {unit.name: unit.left_out for unit in recorded_units(result.folder) or ()}
     assert reasons == {
         "quiet": "its property TPC_INSTRUMENT is OFF",
-        "t": "it is a test (TPC_TESTS=ON has tests analysed, too)",
+        "t": "it is a test (set TPC_TESTS=ON to analyse tests too)",
         "u": "",
         "x": "",
     }
@@ -443,7 +445,7 @@ def test_what_carries_reports_makes_none(tmp_path: Path) -> None:
     assert result.analysed() == ["y"]
     reasons = {unit.name: unit.left_out for unit in recorded_units(result.folder) or ()}
     assert reasons == {
-        "x": "its code carries the reports (its property TPC_INSTRUMENT has it analysed, too)",
+        "x": "its code carries the reports (set its property TPC_INSTRUMENT to analyse it too)",
         "y": "",
     }
 

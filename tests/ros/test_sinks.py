@@ -265,7 +265,7 @@ def test_forked_child_ends_and_its_reports_are_said_to_be_missing(graph, nodes, 
         assert reader.reports == {key(THREAD): 100, key(PARENT): 1}
     said = process.log.read_text()
     assert "child ended with 0" in said
-    assert said.count("was forked from a node: its reports are not on") == 1
+    assert said.count("was forked from a node: its reports do not reach") == 1
 
 
 def test_forked_child_goes_on_with_what_its_parent_was_set_to(graph, nodes, tmp_path):
@@ -400,13 +400,13 @@ def test_parameters_hold_from_the_start_and_wrong_ones_get_a_warning(graph, node
     (found,) = json.loads(output[: output.rindex("]") + 1])
     assert found["values"]["sink"] == "off" and not found["success"]
     said = process.log.read_text()
-    for name in ("/reporter/tpc/period is left out", "/reporter/tpc/site_cap is left out"):
+    for name in ("/reporter/tpc/period is ignored", "/reporter/tpc/site_cap is ignored"):
         assert f"tpc: the parameter {name}" in said
     assert "tpc: there is no setting perod (/reporter/tpc/perod)" in said
     graph.call("setParam", "/tpc", 3)
     graph.call("deleteParam", "/reporter/tpc")
     code, output = pytpc("sink", "/reporter")
-    assert code == 1 and "/tpc is no folder of parameters" in output
+    assert code == 1 and "/tpc is not a namespace of parameters and is ignored" in output
     code, output = pytpc("sink", "/other")
     assert code == 1 and output.strip().endswith(
         "/other is not a running instrumented node; there are /reporter"

@@ -1,5 +1,5 @@
-// Makes the header run: parameters from the environment (PARAM_name=value),
-// messages and reports to the standard output.
+// Implements the header: parameters come from the environment
+// (PARAM_name=value), messages and reports go to the standard output.
 #include <ros/ros.h>
 
 #include <cstdio>

@@ -1,7 +1,7 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// Each operand of && and || is a predicate; they are of one condition. A
+// Each operand of && and || is a predicate; all belong to one condition. A
 // nested if is another condition.
 #include <ros/ros.h>
 

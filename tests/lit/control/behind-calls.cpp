@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A publish behind one, two and three calls: each call is a step of distance.
-// A loop around the call does not hide what decides on the loop.
+// A publish behind one, two and three calls: each call adds one to the
+// distance. A loop around the call does not hide what controls the loop.
 #include <ros/ros.h>
 
 static void third(ros::Publisher &Out) { Out.publish(std_msgs::Number()); }

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// ?: decides a value that is published, with sides that cost nothing (a
-// select) and with calls (branches).
+// ?: decides a published value, with sides without side effects (a select) and
+// with calls (branches).
 #include <ros/ros.h>
 
 double costly();

@@ -3,8 +3,8 @@
 // RUN: %compile -O0 %s -o %t.0.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.0.o | FileCheck %s
 //
-// The operands of one condition are counted together and are one step apart,
-// in a loop and in a variable as in an if, and whatever there is to clean up.
+// The operands of one condition are counted together and have the same
+// distance: in a loop, in a variable and in an if, also if there are cleanups.
 #include <ros/ros.h>
 
 double A, B;

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A truth value that inlining has made a constant has no second operand to look
-// at (this crashed).
+// After inlining, a truth value may be a constant and has no second operand to
+// inspect (this crashed).
 #include <ros/ros.h>
 
 static __attribute__((always_inline)) bool yes() { return true; }

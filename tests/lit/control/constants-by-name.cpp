@@ -1,9 +1,9 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A const member that every constructor makes the same and what a function
-// always returns are constants. A member that is not const is not, nor is a
-// function with two results, nor a member that the constructor is handed.
+// A const member to which all constructors give the same value, and what a
+// function always returns, are constants. A member that is not const, a function
+// with two results, and a member that the constructor gets as an argument are not.
 #include <ros/ros.h>
 
 static double band() { return 0.75; }

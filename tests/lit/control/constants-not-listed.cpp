@@ -3,16 +3,16 @@
 // RUN: %compile -O0 %s -o %t.0.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.0.o | FileCheck %s
 //
-// Not comparisons with a constant: pointers, truth values, a number as a
-// condition or compared with 0 to the same end, what is compared with a
-// parameter, what exposes nothing, text, and what a logging macro asks.
+// These are not comparisons with a constant: pointers, truth values, a number
+// used as a condition or compared with 0 instead, comparisons with a parameter,
+// comparisons that expose nothing, text, and the tests of a logging macro.
 #include <ros/ros.h>
 
 static int Count;
 
 int count();
 
-// As the macros of ros/console.h write it.
+// Written as the macros of ros/console.h are.
 namespace ros::console {
 struct LogLocation {
   int Level;

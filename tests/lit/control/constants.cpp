@@ -4,8 +4,8 @@
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.0.o | FileCheck %s
 //
 // Comparisons with constants that an exposing statement depends on: literals,
-// macros, enumerators, constants that the compiler folds, loop bounds, and those
-// in a function whose result decides.
+// macros, enumerators, constants that the compiler folds, loop bounds, and
+// those in a function whose result decides.
 #include <ros/ros.h>
 
 #define MOST 12

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// Who ends the life of an object writes nothing that is published: neither its
-// destructor, which is another link unit's, nor what gives the memory back.
+// Destroying an object writes nothing that is published: neither its destructor,
+// which is in another link unit, nor the function that frees the memory.
 #include <ros/ros.h>
 
 struct Box : std_msgs::Number {

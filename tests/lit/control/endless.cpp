@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A loop without an end: its inner branches decide, also where they begin it
-// again; a loop before it that ends does not.
+// In an endless loop the inner branches decide, also those that start the next
+// round; an earlier loop that ends does not.
 #include <ros/ros.h>
 
 double sensed();

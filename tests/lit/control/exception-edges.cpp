@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// That a call can throw makes nothing depend on it; an explicit throw behind
-// a condition does.
+// Nothing depends on whether a call can throw; code behind an explicit throw
+// under a condition depends on the condition.
 #include <ros/ros.h>
 
 void mayThrow();

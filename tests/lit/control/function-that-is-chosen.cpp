@@ -3,8 +3,8 @@
 // RUN: %compile -O0 %s -o %t.0.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.0.o | FileCheck %s
 //
-// What chooses the function that a pointer leads to decides what it publishes;
-// what chooses among functions of which none publishes decides nothing.
+// A predicate that chooses the function in a pointer decides what the function publishes;
+// a predicate that chooses among functions that publish nothing decides nothing.
 #include <ros/ros.h>
 
 static int Limit, Level;

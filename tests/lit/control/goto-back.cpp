@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A jump back past the end of a scope: all that the condition decides is how
-// often it is asked, the publish behind it happens anyway.
+// A jump back past the end of a scope: the condition only decides how often it
+// is evaluated; the publish behind it happens anyway.
 #include <ros/ros.h>
 
 double sensed();
@@ -15,7 +15,7 @@ again:
   double Value = sensed();
   if (Value > Limit)
     goto again;
-  // Something with an end of life lies between, so clang notes where to go on.
+  // An object with a destructor lies between, so clang records where to continue.
   std_msgs::Number Message;
   Out.publish(Message);
 }

@@ -1,9 +1,9 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A jump to the end of a scope, behind which all goes on in the same way, chooses
-// nothing of what is returned there: clang's own way out, for a scope that is
-// left to nowhere, is none.
+// A jump to the end of a scope does not choose between results returned behind
+// it, if all paths continue alike there: the extra path that clang adds, for a
+// scope that is left to nowhere, does not count.
 #include <ros/ros.h>
 
 bool sensed();

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// Nothing that is exposed depends on these: the branch only counts, only
-// logs, or the publish happens anyway.
+// No exposing statement depends on these: the branch only counts, only logs, or
+// the publish happens anyway.
 #include <ros/ros.h>
 #include <cstdio>
 

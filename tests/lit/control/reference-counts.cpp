@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A destructor that publishes runs when the last owner lets go: who lets go
-// decides it; who could be an owner as well, does not.
+// A destructor that publishes runs when the last owner releases the object:
+// what controls the release decides, the count of the other owners does not.
 #include <ros/ros.h>
 
 #include <memory>

@@ -1,9 +1,9 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// Both operands lead to the same return, so that both choose the value that is
-// returned, though a scope is cleaned up in between. The branch is in round 2,
-// the comparison in 3, the call in 4, the return in 5, the value in 6.
+// Both operands lead to the same return, so both choose the returned value,
+// although a scope is cleaned up in between. The branch is in round 2, the
+// comparison in 3, the call in 4, the return in 5, the value in 6.
 #include <ros/ros.h>
 
 static double chosen(double Value, double First, double Second) {

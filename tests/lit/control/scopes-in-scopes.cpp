@@ -1,9 +1,9 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// Where scopes in scopes are left that have something to clean up, the compiler
-// asks several times where to go: what leads to a return either way decides
-// nothing of what comes behind.
+// When nested scopes with cleanups are left, the compiler checks several times
+// where to continue: a check that leads to a return on both paths decides
+// nothing of the code behind.
 #include <ros/ros.h>
 
 void used(const std::string &Text);

@@ -1,7 +1,7 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A service call exposes as a publish does.
+// A service call exposes like a publish.
 #include <ros/ros.h>
 
 void step(ros::NodeHandle &Handle, ros::ServiceClient &Arm, double V) {

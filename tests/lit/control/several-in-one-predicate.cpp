@@ -1,7 +1,7 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// Comparisons that are joined without short circuit form one predicate.
+// Comparisons that are combined without short circuit form one predicate.
 #include <ros/ros.h>
 
 void step(ros::NodeHandle &Handle, ros::Publisher &Out, double V) {

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A narrow signed constant keeps its sign where a switch takes it: the
-// predicate decides which case is taken.
+// A narrow signed constant keeps its sign when a switch takes it: the predicate
+// decides which case is taken.
 // CHECK: comparisons of {{.*}}: 1
 // CHECK-NEXT: parameter 'limit' relation > as x distance 1
 #include <ros/ros.h>

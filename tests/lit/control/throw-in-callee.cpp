@@ -1,9 +1,9 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A throw of the user's in a called function decides what stands behind the
-// call, and what its handler does; the call is a step, as a predicate is, and
-// the throw another.
+// A throw in user code in a called function decides whether the code behind the
+// call runs, and what its handler does. The call is a step, like a predicate,
+// and the throw another.
 #include <ros/ros.h>
 
 #include <stdexcept>

@@ -2,8 +2,8 @@
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
 // A throw decides nothing about what is exposed before the call, or after a
-// handler took it (its own type, a base, any), or where it ends the program;
-// nor does one in a library, or behind a call whose function is not there.
+// handler caught it (its own type, a base, any), or where it ends the program.
+// Neither does a throw in a library, or behind a call whose function has no body.
 #include <ros/ros.h>
 
 #include <stdexcept>
@@ -65,7 +65,7 @@ void swallowed(ros::Publisher &Out, double V) {
     ++Bad;
   }
   try {
-    // That the constructor may throw, too, is nobody's concern.
+    // That the constructor may throw too does not matter.
     if (V > Here)
       throw std::out_of_range("over");
     ++Bad;

@@ -3,8 +3,8 @@
 // RUN: %compile -O0 %s -o %t.0.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.0.o | FileCheck %s
 //
-// `isunordered(a, b)` asks whether the two are numbers, not how they compare: it
-// is no comparison with a threshold. `<=` is reported as `<=` in every form.
+// `isunordered(a, b)` asks whether the two are numbers, not how they compare, so
+// it is not a comparison with a threshold. `<=` is reported as `<=` in every form.
 #include <ros/ros.h>
 
 void step(ros::Publisher &Out, double Limit, double V, int I, unsigned N) {

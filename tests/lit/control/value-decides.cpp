@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A predicate that decides a value that decides another predicate, through a
-// member that one method writes and another reads.
+// A predicate decides a value that decides another predicate, through a member
+// that one method writes and another reads.
 #include <ros/ros.h>
 
 class Node {

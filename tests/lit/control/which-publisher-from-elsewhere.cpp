@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A predicate decides where a message is seen by a pointer to the publisher
-// that was stored, by its index, by what is handed on, and by what is returned.
+// A predicate decides where a message is seen: by a stored pointer to the
+// publisher, by its index, by an argument, and by a result.
 // CHECK: comparisons of {{.*}}: 4
 #include <ros/ros.h>
 

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A predicate that chooses by which publisher a message is sent decides where
-// it is seen; one that chooses what is only counted decides nothing.
+// A predicate that chooses the publisher of a message decides where it is seen;
+// one that chooses something that is only counted decides nothing.
 // CHECK: comparisons of {{.*}}: 1
 // CHECK-NEXT: parameter 'split' relation < as x distance 2
 #include <ros/ros.h>

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// What an exposing statement shows is its message, not the publisher that it
-// is called on: how that came about decides nothing of what is sent.
+// An exposing statement shows its message, not the publisher that it is called
+// on: how the publisher was made decides nothing of what is sent.
 #include <ros/ros.h>
 
 // CHECK: comparisons of {{.*}}: 1

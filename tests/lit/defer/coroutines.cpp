@@ -5,8 +5,8 @@
 // RUN: %link -O2 %t.2.o -o %t.2
 // RUN: %t.2 | FileCheck %s
 //
-// A coroutine is taken apart by passes that must run and others that need not;
-// it is by both, at every level.
+// Some passes that split a coroutine must run in the compiler and others need
+// not; here both run, at every level.
 // CHECK: 0 1 4 9 end 14
 #include <coroutine>
 #include <cstdio>

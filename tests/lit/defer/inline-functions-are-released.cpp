@@ -3,11 +3,11 @@
 // RUN: %link -shared %t.o -o %t.so
 // RUN: llvm-nm -D %t.so | FileCheck %s --check-prefix=EXPORTED
 //
-// An inline function of a system header that nobody takes the address of is not
-// exported for being in the file, as it would not be if it had gone into its
-// callers there. One that somebody takes it of is; so are the user's own (of a
-// template in a source file there may be no other body) and the variables in
-// functions.
+// An inline function of a system header whose address nobody takes is not
+// exported merely because it is in the file: an optimised file would not
+// contain it. These are exported: one whose address is taken, inline user
+// functions (a template in a source file may have no other body) and variables
+// inside functions.
 // CHECK-DAG: define linkonce_odr {{.*}} @_ZSt3maxIiERKT_S2_S2_({{.*}}) unnamed_addr #
 // CHECK-DAG: define linkonce_odr {{.*}} @_ZSt3minIiERKT_S2_S2_({{.*}}) #
 // CHECK-DAG: define linkonce_odr {{.*}} @_Z6calledi({{.*}}) #

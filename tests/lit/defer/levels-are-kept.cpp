@@ -3,8 +3,8 @@
 // RUN: llvm-dis %t.0.o -o - | FileCheck %s --check-prefixes=CHECK,O0
 // RUN: llvm-dis %t.2.o -o - | FileCheck %s --check-prefixes=CHECK,O2
 //
-// No pass of clang's own runs at any level, and what the level says to those
-// that run at the link is there.
+// None of clang's own passes runs at any level, and the attributes that the
+// level sets for the passes at the link are kept.
 // CHECK-LABEL: define {{.*}}@square
 // CHECK: alloca i32
 // CHECK: %[[#V:]] = load i32

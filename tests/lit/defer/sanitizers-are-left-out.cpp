@@ -2,8 +2,8 @@
 // RUN: %compile -O1 -fsanitize=thread %s -o - | llvm-dis -o - | FileCheck %s
 // RUN: %compile -O1 --coverage %s -o - | llvm-dis -o - | FileCheck %s
 //
-// What the compiler would have its passes put into the code is left out with
-// them (tpc.cmake says so); the code is what the source has.
+// What the compiler's own passes would add to the code is left out with them
+// (tpc.cmake warns about it); the code is that of the source.
 // CHECK-LABEL: define {{.*}}@first
 // CHECK-NOT: sanitize_
 // CHECK-NOT: call {{.*}}san_

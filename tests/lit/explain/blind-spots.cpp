@@ -2,7 +2,7 @@
 // RUN: %opt -disable-output -passes=tpc -tpc-static-info=%t.json %t.o
 // RUN: %python %inputs/show.py spots %t.json | FileCheck %s --match-full-lines
 //
-// Where the analysis does not see on: each place once, by kind.
+// Where the analysis has blind spots: each place once, by kind.
 #include <ros/ros.h>
 
 #include <functional>
@@ -29,17 +29,17 @@ void step(ros::NodeHandle &Handle, const std::string &Name, double Value,
   // CHECK-NEXT: lost_value factor [[#@LINE+1]] step: mixed with another variable
   if (Value > Factor * Value)
     keep(true);
-  // CHECK-NEXT: lost_value shown [[#@LINE+1]] step: handed to show(), which is not looked into
+  // CHECK-NEXT: lost_value shown [[#@LINE+1]] step: handed to show(), which is not analysed
   show(Shown);
-  // CHECK-NEXT: lost_outcome kept [[#@LINE+1]] step: handed to keep(), which is not looked into
+  // CHECK-NEXT: lost_outcome kept [[#@LINE+1]] step: handed to keep(), which is not analysed
   keep(Value > Kept);
-  // CHECK-NEXT: unknown_pointer hidden [[#@LINE+1]] step: stored through a pointer to nowhere known
+  // CHECK-NEXT: unknown_pointer hidden [[#@LINE+1]] step: stored through a pointer to an unknown place
   **anywhere() = Hidden;
   Message *Out = new Message;
   // CHECK-NEXT: unread sent [[#@LINE+1]] step: stored into Message::Limit, and nothing here reads it
   Out->Limit = Sent;
   // CHECK-NEXT: unread <dynamic>limit [[#@LINE+2]] step: stored into Own, and nothing here reads it
-  // CHECK-NEXT: dynamic_name None [[#@LINE+1]] step: reads a parameter whose name is put together
+  // CHECK-NEXT: dynamic_name None [[#@LINE+1]] step: reads a parameter whose name is not constant
   Handle.getParam(Name + "limit", Own);
   // CHECK-NEXT: indirect_call None [[#@LINE+1]] step: calls a function that is not known
   Hook();

@@ -2,8 +2,8 @@
 // RUN: %opt -disable-output -passes=tpc -tpc-static-info=%t.json %t.o
 // RUN: %python %inputs/show.py not-exposed %t.json | FileCheck %s --match-full-lines
 //
-// Comparisons with parameters on which nothing exposed depends; an instance of
-// a template that is exposed speaks for the others.
+// Comparisons with parameters that no exposing statement depends on; if one
+// instance of a template is exposed, the others are not listed.
 #include <ros/ros.h>
 
 // CHECK: 2 not exposed

@@ -2,7 +2,7 @@
 // RUN: %opt -disable-output -passes=tpc -tpc-static-info=%t.json %t.o
 // RUN: %python %inputs/show.py paths %t.json | FileCheck %s --match-full-lines
 //
-// The way by a throw says which call throws, and who lets it through.
+// The path through a throw names the call that throws, and what does not catch it.
 #include <ros/ros.h>
 
 // CHECK-DAG: most: 6 steps

@@ -2,8 +2,8 @@
 // RUN: %opt -disable-output -passes=tpc -tpc-static-info=%t.json %t.o
 // RUN: %python %inputs/show.py paths %t.json | FileCheck %s --match-full-lines
 //
-// The way where the outcome is kept, a predicate sets a state that another
-// looks at, and an argument and a result carry on what was decided.
+// The path if the outcome is stored, a predicate sets a state that another one
+// tests, and an argument and a result pass on what was decided.
 #include <ros/ros.h>
 
 class Node {

@@ -2,10 +2,10 @@
 // RUN: %opt -disable-output -passes=tpc -tpc-static-info=%t.json %t.o
 // RUN: %python %inputs/show.py paths %t.json | FileCheck %s --match-full-lines
 //
-// In a link unit with very many comparisons the ways are shorter: of 10,000
-// steps 1,000 comparisons get 5 before the predicate and 5 behind it. Here
-// these are the read and the comparison, and with the predicate, which is on
-// the comparison's line, two steps, a gap and two steps.
+// In a link unit with very many comparisons the paths are shorter: of 10,000
+// steps, 1,000 comparisons get 5 each before the predicate and 5 behind it.
+// Here these are the read and the comparison and, with the predicate, which is
+// on the line of the comparison, two steps, a gap and two steps.
 #include <ros/ros.h>
 
 // CHECK-COUNT-1000: limit: 6 steps

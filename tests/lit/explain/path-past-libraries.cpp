@@ -2,7 +2,7 @@
 // RUN: %opt -disable-output -passes=tpc -tpc-static-info=%t.json %t.o
 // RUN: %python %inputs/show.py paths %t.json | FileCheck %s --match-full-lines
 //
-// What the standard library does with a value is part of the user's line.
+// What the standard library does with a value is part of the line of user code.
 #include <ros/ros.h>
 
 #include <utility>

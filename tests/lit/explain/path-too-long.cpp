@@ -2,8 +2,8 @@
 // RUN: %opt -disable-output -passes=tpc -tpc-static-info=%t.json %t.o
 // RUN: %python %inputs/show.py paths %t.json | FileCheck %s --match-full-lines
 //
-// Of more than 32 steps on the way to the exposing statement the middle is left
-// out: the predicate, 41 calls and the publish are 43 steps.
+// If the path to the exposing statement has more than 32 steps, the middle is
+// left out: the predicate, 41 calls and the publish are 43 steps.
 #include <ros/ros.h>
 
 // CHECK: limit: 33 steps

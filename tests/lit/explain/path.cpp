@@ -2,8 +2,8 @@
 // RUN: %opt -disable-output -passes=tpc -tpc-static-info=%t.json %t.o
 // RUN: %python %inputs/show.py paths %t.json | FileCheck %s --match-full-lines
 //
-// The way of a parameter from the read to what exposes it, a step for a line
-// of the source.
+// The path of a parameter from the read to the statement that exposes it, with
+// one step for each line of the source.
 #include <ros/ros.h>
 
 // CHECK-DAG: far: 8 steps

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A value that goes through a shared function comes out by the call that it
-// went in by: the other caller does not compare a parameter.
+// A value that enters a shared function by one call leaves it by the same call:
+// the other caller does not compare a parameter.
 #include <ros/ros.h>
 
 static double same(double X) { return X; }

@@ -1,7 +1,7 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A parameter's value that is handed to a function by value and by reference,
+// A parameter's value that is passed to a function by value and by reference,
 // and a variable that a function reads it into.
 #include <ros/ros.h>
 

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// Functions of numbers and the operations of integers are kept as expressions,
-// with affine steps around and inside them folded.
+// Mathematical functions and integer operations are kept as expressions, with
+// the affine steps around and inside them folded.
 #include <ros/ros.h>
 
 #include <cmath>
@@ -37,7 +37,7 @@ void numbers(ros::NodeHandle &Handle, ros::Publisher &Out, double V) {
   // CHECK-DAG: relation > as 0.017453292519943295 * x {{.*}} at [[#@LINE+1]]:9
   if (V > X * M_PI / 180)
     Out.publish(std_msgs::Number());
-  // What the arithmetic takes away is the parameter again.
+  // Inverse operations give the parameter again.
   // CHECK-DAG: parameter 'x' relation > as x {{.*}} at [[#@LINE+1]]:9
   if (V > (X + 2) - 2)
     Out.publish(std_msgs::Number());

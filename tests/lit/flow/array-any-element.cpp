@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// What is read or written at an index that is not constant, by a pointer that
-// walks, or in a copy of the whole array can be any element.
+// A read or write at an index that is not constant, by a moving pointer, or in
+// a copy of the whole array can concern any element.
 #include <cstring>
 #include <ros/ros.h>
 
@@ -58,14 +58,14 @@ void step(ros::Publisher &Out, double V, int I) {
   // CHECK-DAG: parameter 'copied' {{.*}} at [[#@LINE+1]]:9
   if (V < To[1])
     Out.publish(Message);
-  // As part of an object an element is copied as itself.
+  // As part of an object, an element is copied as itself.
   // CHECK-DAG: parameter 'taken 0' {{.*}} at [[#@LINE+1]]:9
   if (V < Taken.Values[0])
     Out.publish(Message);
   // CHECK-DAG: parameter 'taken 1' {{.*}} at [[#@LINE+1]]:9
   if (V < Taken.Values[1])
     Out.publish(Message);
-  // Elements from the 64th on are not told apart from any.
+  // Elements from the 64th on are not distinguished from any element.
   // CHECK-DAG: parameter 'many 80' {{.*}} at [[#@LINE+1]]:9
   if (V < Many[2])
     Out.publish(Message);

@@ -1,9 +1,9 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// Elements of an array at constant indices are variables of their own: of
-// globals, members and locals, in rows, of objects, in a std::array, and where
-// a function is handed the array.
+// Elements of an array at constant indices are variables of their own: in
+// globals, members and locals, in rows, in arrays of objects, in a std::array,
+// and if a function gets the array.
 #include <array>
 #include <ros/ros.h>
 

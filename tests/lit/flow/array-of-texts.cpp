@@ -1,7 +1,7 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// Strings in an array are told apart as numbers are.
+// Strings in an array are distinguished like numbers.
 #include <ros/ros.h>
 
 std::string Names[2];

@@ -1,9 +1,9 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A store to one element replaces what was there, and no other element; one at
-// an index that is not constant replaces nothing. So it is in locals, in parts
-// of objects, in what functions share and in messages.
+// A store to one element replaces its value and that of no other element; one
+// at an index that is not constant replaces nothing. This holds for locals,
+// parts of objects, shared memory and messages.
 #include <ros/ros.h>
 
 struct Series {
@@ -25,7 +25,7 @@ void local(ros::NodeHandle &Handle, ros::Publisher &Out, double V, int I) {
   // CHECK-DAG: parameter 'kept' {{.*}} at [[#@LINE+1]]:9
   if (V < Limits[1])
     Out.publish(Message);
-  // Not told: which elements are left to be read by an index that is not known.
+  // Not known: which elements a read at an unknown index may still find.
   // CHECK-DAG: parameter 'replaced' {{.*}} at [[#@LINE+2]]:9
   // CHECK-DAG: parameter 'kept' {{.*}} at [[#@LINE+1]]:9
   if (V < Limits[I])

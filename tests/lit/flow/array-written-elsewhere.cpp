@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A local array of which another function knows the address: as an array it is
-// stored by the address of its first element.
+// A local array whose address another function knows: the address of its first
+// element is stored.
 #include <ros/ros.h>
 
 double *Kept;

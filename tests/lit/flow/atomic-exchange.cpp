@@ -1,9 +1,9 @@
 // RUN: %compile -O1 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// What is exchanged atomically is read and written: a flag that a callback sets
-// and a timer takes, a state that is left if it is there, one that is entered.
-// One that nobody asks about decides nothing.
+// An atomic exchange reads and writes: a flag that a callback sets and a timer
+// takes, a state that is left if it is set, one that is entered. One whose old
+// value nobody uses decides nothing.
 #include <atomic>
 #include <ros/ros.h>
 

@@ -1,8 +1,8 @@
 // RUN: %compile -O1 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// What is stored atomically other threads see before it is replaced; what is
-// stored plainly they are taken not to.
+// Other threads see an atomic store before it is replaced; they are assumed not
+// to see a plain store.
 #include <ros/ros.h>
 
 static ros::Publisher Out;

@@ -2,8 +2,8 @@
 // RUN: %opt -disable-output -passes=tpc -tpc-static-info=%t.json %t.o
 // RUN: FileCheck %s --input-file=%t.json
 //
-// A counter that is updated atomically is written: what decides whether it
-// counts decides what is published by it. Both are explained.
+// An atomic update of a counter is a write: what decides whether it counts
+// decides what is published because of it. Both are explained.
 #include <atomic>
 #include <ros/ros.h>
 

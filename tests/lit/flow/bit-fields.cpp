@@ -2,7 +2,7 @@
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
 // Bit fields share their byte: each is followed through the masks and shifts
-// that put it in and take it out, and its neighbour is not taken for it.
+// that write and read it, and is not confused with its neighbour.
 #include <ros/ros.h>
 
 struct Options {

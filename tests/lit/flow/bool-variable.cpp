@@ -1,7 +1,7 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A comparison's outcome that a variable carries to a later branch: local,
+// A comparison's outcome that a variable carries to a later branch: a local,
 // and a member that another method reads.
 #include <ros/ros.h>
 

@@ -3,9 +3,9 @@
 // RUN: llvm-link %t.o -o %t.bc
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.bc | FileCheck %s
 //
-// Two thresholds that boost::bind keeps are told apart by their places, those
-// of another bind object by its class, and a message that holds a double is not
-// taken for one that is bound.
+// Two thresholds that boost::bind stores are distinguished by their places,
+// those of another bind object by its class, and a message that contains a
+// double is not confused with a bound double.
 #include <boost/bind/bind.hpp>
 #include <ros/ros.h>
 #include <std_msgs/Float64.h>

@@ -2,10 +2,10 @@
 // RUN: llvm-link %t.o -o %t.bc
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.bc | FileCheck %s
 //
-// What bind objects, lambdas and functors keep: each class has its own numbers,
-// whatever else is bound, and although the linker makes one class of all that
-// hold a double (which is why the test links). A bound number that nobody
-// compares is none.
+// What bind objects, lambdas and functors store: each class has its own
+// numbers, whatever else is bound, although the linker merges all classes that
+// contain a double (which is why the test links). A bound number that nobody
+// compares is not found.
 #include <functional>
 #include <ros/ros.h>
 

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A local that a lambda captures by reference is told apart from other objects
-// of its class.
+// A local that a lambda captures by reference is distinguished from other
+// objects of its class.
 #include <ros/ros.h>
 
 struct Range {

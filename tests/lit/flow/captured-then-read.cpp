@@ -1,9 +1,9 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A local variable that a lambda captures is no other variable: what its own
-// function writes is seen by what follows, not by what came before, and what it
-// replaces is gone. What the lambda writes may be seen anywhere.
+// A local variable that a lambda captures stays the same variable: code behind
+// a write of its own function sees the value, code before it does not, and a
+// replaced value is gone. What the lambda writes may be seen anywhere.
 #include <ros/ros.h>
 
 double sensed();

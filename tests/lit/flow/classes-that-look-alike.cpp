@@ -3,7 +3,7 @@
 // RUN: %link -O2 -Wl,-mllvm,-tpc-static-info=%t.json %t.o %t.ros.o -o %t
 // RUN: FileCheck %s --input-file=%t.json
 //
-// Linking makes one LLVM type of classes with the same fields; they stay two.
+// The linker merges classes with the same fields into one LLVM type; they stay two.
 #include <ros/ros.h>
 
 class Limiter {

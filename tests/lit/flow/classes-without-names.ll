@@ -1,8 +1,8 @@
 ; RUN: %opt -disable-output -passes='print<tpc-class-object-access>' %s | FileCheck %s
 ;
-; Classes that have lost their names and look alike, one in the other, are not
-; taken for one; nor is a class that contains another one of its name entered
-; without end.
+; Classes that have lost their names and look alike, one inside the other, are
+; not taken for one; and a class that contains another one with its name is not
+; followed without end.
 %0 = type { %1 }
 %1 = type { %2 }
 %2 = type { i32 }

@@ -2,8 +2,8 @@
 // RUN: %opt -disable-output -passes=tpc -tpc-link-unit=node -tpc-static-info=%t.json %t.o
 // RUN: FileCheck %s --input-file=%t.json
 //
-// A constant that is widened before it is compared, as a local variable that is
-// never written again, is no trouble.
+// A constant that is widened before it is compared, and is in a local variable
+// that is never written again, causes no failure.
 // CHECK: "status": "ok"
 #include <ros/ros.h>
 

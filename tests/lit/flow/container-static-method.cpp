@@ -2,7 +2,7 @@
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o 2>&1 | FileCheck %s
 //
 // A static method of a container has no object: std::deque asks one how many
-// elements go into a part of it. The analysis goes on.
+// elements fit into a node. The analysis does not fail.
 #include <ros/ros.h>
 
 #include <deque>

@@ -23,7 +23,7 @@ void step(ros::NodeHandle &Handle, ros::Publisher &Out, double V, long W) {
   // CHECK-DAG: parameter 'n' relation > as x {{.*}} at [[#@LINE+1]]:9
   if (V > N)
     Out.publish(std_msgs::Number());
-  // To and fro: what was an int fits into one.
+  // Back and forth: what was an int fits into one.
   // CHECK-DAG: parameter 'n' relation > as x {{.*}} at [[#@LINE+1]]:9
   if (W > static_cast<int>(static_cast<long>(N)))
     Out.publish(std_msgs::Number());

@@ -1,9 +1,9 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// What decides whether a whole object is copied decides what a library's
-// function reads from it: publish 1, the store to the message 2, the call 3,
-// the copy 4.
+// A predicate that decides whether a whole object is copied decides what a
+// library function reads from it: publish 1, the store to the message 2, the
+// call 3, the copy 4.
 #include <ros/ros.h>
 
 struct Stamp {

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// What was copied before it is overwritten lives on in the copy; what is
-// overwritten before it is copied does not.
+// A value that is copied before it is overwritten survives in the copy; one
+// that is overwritten before the copy does not.
 // CHECK: comparisons of {{.*}}: 1
 // CHECK-NEXT: parameter 'limit' relation > as x
 #include <ros/ros.h>

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// Arithmetic with constants is kept: affine as scale and offset, else as an
-// expression; arithmetic with another variable is lost, and counted.
+// Arithmetic with constants is recorded: affine as scale and offset, otherwise
+// as an expression; a value combined with another variable is lost, and counted.
 #include <ros/ros.h>
 
 void step(ros::NodeHandle &Handle, ros::Publisher &Out, double Value) {

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A number of seconds that is made a ros::Duration and taken out again is the
-// same number.
+// A number of seconds that is put into a ros::Duration and taken out again is
+// the same number.
 #include <ros/ros.h>
 
 // As in ros/duration.h.

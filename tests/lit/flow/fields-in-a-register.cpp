@@ -1,9 +1,9 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A struct that is returned and handed over in registers: two numbers in one of
-// 64 bits, three in a pair, or two floats in a vector. Each number is followed, and no other is taken
-// for it.
+// A struct that is returned and passed in registers: two numbers in one of 64
+// bits, three in a pair, or two floats in a vector. Each number is followed,
+// and not confused with another.
 #include <ros/ros.h>
 
 struct Rate {

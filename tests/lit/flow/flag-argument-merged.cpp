@@ -5,9 +5,9 @@
 // RUN: %opt -disable-output -passes=tpc -tpc-link-unit=node -tpc-static-info=%t.0.json %t.0.o
 // RUN: FileCheck %s --input-file=%t.0.json
 //
-// A flag that is an argument and is merged with another value before it
-// decides: found, at the predicate; there is no place at which the argument
-// itself could be reported, which is counted.
+// A flag that is an argument and is merged with another value before it decides
+// is found at the predicate. The argument itself has no place where it could be
+// reported, which is counted.
 // CHECK-DAG: "not_instrumented": 1
 // CHECK-DAG: "lineno": [[#@LINE+6]]
 // CHECK-DAG: "status": "ok"

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A flag that comes as an argument and is merged with another value has no
-// place of its own: it stands at the branch.
+// A flag that is an argument and is merged with another value has no place of
+// its own: its place is the branch.
 #include <ros/ros.h>
 
 static void act(ros::Publisher &Out, int Mode, bool Odd) {

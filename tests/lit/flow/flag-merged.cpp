@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A flag that is merged with other values before it decides stands where each
-// of its values is read, also where several of them are one parameter's.
+// A flag that is merged with other values before it decides has a place where
+// each of its values is read, also if several of them are of one parameter.
 #include <ros/ros.h>
 
 bool chance();

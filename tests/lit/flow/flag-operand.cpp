@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A flag that is the last operand of a condition whose outcome goes on stands
-// where it is read, not where the outcome decides.
+// The place of a flag that is the last operand of a condition whose outcome is
+// used further is where the flag is read, not where the outcome decides.
 #include <ros/ros.h>
 
 static bool Pitch, Roll;

@@ -2,7 +2,7 @@
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
 // A parameter in a global variable, and in the first and second field of a
-// global object: the first has no getelementptr.
+// global object: an access to the first field has no getelementptr.
 #include <ros/ros.h>
 
 double Limit;

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// What is handed to a function together with a message is in the message only
-// where the function puts it there.
+// A value that is passed to a function together with a message is in the
+// message only if the function puts it there.
 #include <ros/ros.h>
 
 static int Limit, Traced;

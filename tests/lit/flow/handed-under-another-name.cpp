@@ -1,9 +1,9 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A local variable is written by a function that is handed it by a pointer
-// which may lead elsewhere as well, or by what another function returned. That
-// its address is compared or subtracted hands it to nobody.
+// A local variable is written by a function that gets a pointer to it which may
+// also lead elsewhere, or that another function returned. Comparing or
+// subtracting its address passes it to nobody.
 #include <ros/ros.h>
 
 struct Reader {

@@ -2,7 +2,7 @@
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
 // A global object with an initial value can have another type in the program
-// than its class; its fields are found as any other's.
+// than its class; its fields are found like those of any other.
 #include <ros/ros.h>
 
 #include <memory>

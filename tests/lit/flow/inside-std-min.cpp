@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A comparison in std::min, std::max or std::clamp stands at their call; one in
-// another function of a library is counted, not listed.
+// The place of a comparison in std::min, std::max or std::clamp is their call;
+// one in another library function is counted, not listed.
 #include <ros/ros.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ void step(ros::NodeHandle &Handle, ros::Publisher &Out, double V, double W) {
   // CHECK-DAG: derived 'limit' relation < as -1 * x {{.*}} in _Z4step{{.*}} at [[#@LINE+1]]:18
   Message.data = std::clamp(V, -Limit, 100.0);
   Out.publish(Message);
-  // Of a list, each is compared with what came before it.
+  // Each element of a list is compared with the result so far.
   // CHECK-DAG: 'limit' {{.*}} at [[#@LINE+1]]:18
   Message.data = std::min({V, W, Limit});
   Out.publish(Message);

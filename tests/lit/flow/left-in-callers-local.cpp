@@ -1,9 +1,9 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// What a function leaves in a variable of its caller is taken to be there when
-// it is called again, although that is another run's variable. This is a limit
-// (docs/reference/analysis-limits.md): 'slow' is compared where it is stored alone.
+// What a function writes to a variable of its caller counts as still being there at
+// the next call, although that is another activation's variable. This is a limit
+// (docs/reference/analysis-limits.md): 'slow' is only compared where it is stored.
 #include <ros/ros.h>
 
 #include <algorithm>

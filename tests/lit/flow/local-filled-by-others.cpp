@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A pointer in a local object may lead anywhere where the object was copied to
-// or handed to somebody who may have filled it in, though one is stored there.
+// A pointer in a local object may lead anywhere if the object was copied to or
+// passed to code that may have filled it, even if one pointer is stored there.
 // CHECK: comparisons of {{.*}}: 2
 #include <ros/ros.h>
 

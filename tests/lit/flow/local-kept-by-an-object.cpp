@@ -3,8 +3,8 @@
 // RUN: %compile -O0 %s -o %t.0.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.0.o | FileCheck %s
 //
-// An object that was given the address of a local writes to it, and reads it,
-// though it is not handed it again.
+// An object that got the address of a local writes and reads the local,
+// although the local is not passed to it again.
 #include <ros/ros.h>
 
 static ros::NodeHandle Handle;

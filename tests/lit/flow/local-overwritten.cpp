@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A local variable that is set again before the comparison holds the
-// parameter no more; one that is set again on one way only still can.
+// A local variable that is set again before the comparison no longer holds the
+// parameter; one that is set again on one path only still can.
 #include <ros/ros.h>
 
 void step(ros::NodeHandle &Handle, ros::Publisher &Out, double Value, bool Odd) {

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A local variable that is read through a reference which may be to another one
-// (what std::clamp returns) holds what came before the read, not what came after.
+// A local variable that is read through a reference which may lead to another one
+// (the result of std::clamp) holds what was written before the read, not after.
 #include <ros/ros.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ void step(ros::NodeHandle &Handle, ros::Publisher &Out, double V, double W) {
   if (W > std::clamp(V, 0.5, 10.0))
     Out.publish(std_msgs::Number());
   Handle.getParam("limit", V);
-  // The two comparisons that std::clamp makes, and the one with what it returns.
+  // The two comparisons of std::clamp, and the one with its result.
   // CHECK: comparisons of {{.*}}: 3
   // CHECK-DAG: parameter 'limit' relation > {{.*}} at [[#@LINE+3]]:11
   // CHECK-DAG: derived 'limit' relation < {{.*}} at [[#@LINE+2]]:11

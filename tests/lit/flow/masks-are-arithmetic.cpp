@@ -1,9 +1,9 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// Masks and shifts of the program itself are no bit fields: what a mask cuts off
-// is arithmetic, and a number that is packed with another and compared with it
-// is lost. A truth value that is joined with another by `|=` is no bit field.
+// Masks and shifts in the program itself are not bit fields: a mask that truncates is
+// arithmetic, and a number that is packed together with another one and compared with
+// it is lost. A truth value that is combined with another by `|=` is not a bit field.
 #include <ros/ros.h>
 
 void step(ros::NodeHandle &Handle, ros::Publisher &Out, int N) {

@@ -1,10 +1,10 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// Where both operands can have a parameter's value, the threshold is the one
-// that is never anything else: a value that was limited before is compared with
-// the next limit, and is none. Two that are both configured are both reported,
-// and one parameter on both sides is the nearer one.
+// If both operands can hold the value of a parameter, the threshold is the one
+// that never holds anything else: a value that was limited before is compared
+// with the next limit, and is not a threshold. Two that are both configured are
+// both reported; if one parameter is on both sides, the nearer read counts.
 #include <ros/ros.h>
 
 class Node {

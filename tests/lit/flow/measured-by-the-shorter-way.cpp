@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A parameter that is on both sides is the threshold where the other side can
-// be something else, however long its way there is.
+// A parameter on both sides is the threshold where the other side can be
+// something else, even if its path there is longer.
 #include <ros/ros.h>
 
 double sensed();

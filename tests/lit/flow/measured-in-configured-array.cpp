@@ -1,9 +1,9 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// An array whose element was configured once and which a function fills since
-// holds measured values: what it is compared with is the threshold, the array
-// is not, whichever element is looked at.
+// An array with one configured element that a function has filled since then
+// holds measured values: what it is compared with is the threshold and the
+// array is not, whichever element is used.
 #include <ros/ros.h>
 
 void fill(double *);

@@ -1,7 +1,7 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A member that getParam() fills and that has another value before.
+// A member that getParam() fills and that had another value before.
 #include <ros/ros.h>
 
 class Node {

@@ -1,11 +1,11 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// What the library does with a message inside publish is no write of it: a
-// field that is overwritten before counts no more, one that is set last does.
+// What the library does with a message inside publish is not a write of the
+// message: a field that was overwritten before does not count, the last write does.
 #include <ros/ros.h>
 
-// As the headers of ROS: publish has functions of its own keep the message.
+// As in the headers of ROS, publish lets functions of its own store the message.
 #line 1 "/usr/include/ros/advertised.h"
 namespace ros {
 void keep(void *Message);

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A parameter that is sent in a message is not what comes in with another
-// message of the same class.
+// A parameter that is sent in a message is not confused with the contents of a
+// received message of the same class.
 #include <ros/ros.h>
 
 class Node {

@@ -3,8 +3,8 @@
 // RUN: %compile -O0 %s -o %t.0.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.0.o | FileCheck %s
 //
-// The smaller or larger one of a parameter and a constant is an expression,
-// whether the library chooses or the program.
+// The smaller or larger of a parameter and a constant is an expression, whether
+// the library or the program chooses.
 #include <ros/ros.h>
 
 #include <algorithm>
@@ -41,7 +41,7 @@ void Node::step(ros::NodeHandle &Handle, ros::Publisher &Out, double V, int W) {
   // CHECK-DAG: derived 'x' relation > as max(x, 4) {{.*}} at [[#@LINE+1]]:9
   if (V > std::fmax(X, 4.0))
     Out.publish(std_msgs::Number());
-  // Another constant than the compared one is no limit: the value is merged.
+  // With a constant other than the compared one there is no limit: the value is merged.
   // CHECK-DAG: parameter 'n' relation < as x {{.*}} at [[#@LINE+2]]:9
   int Other = N > 7 ? 3 : N;
   if (W < Other)

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// Fields of the same class in two objects are told apart by the way to them,
-// and a copy of a whole object carries them.
+// Fields of the same class in two objects are distinguished by their paths, and
+// a copy of a whole object copies them.
 #include <ros/ros.h>
 
 struct Range {

@@ -3,9 +3,9 @@
 // RUN: %compile -O0 %s -o %t.0.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.0.o | FileCheck %s
 //
-// A library that is handed an object can call back its virtual functions, and
-// the functions that it keeps: they see a member before it is overwritten. It
-// calls nothing of what it is not handed.
+// A library that gets an object can call its virtual functions and the
+// functions stored in it: they see a member before it is overwritten. The
+// library calls nothing that it does not get.
 #include <functional>
 #include <memory>
 #include <ros/ros.h>

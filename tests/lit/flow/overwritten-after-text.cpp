@@ -3,10 +3,10 @@
 // RUN: %compile -O1 %s -o %t.1.o
 // RUN: %opt -disable-output -passes='internalize,tpc-prepare,print<tpc-gather-results>' -internalize-public-api-list=main %t.1.o | FileCheck %s
 //
-// Between the read of a member and what replaces it the parameter's name is
-// destroyed. Of its class no more than the names of what is in it is known at
-// -O0; it keeps no functions that could see the member, where a std::function
-// does.
+// Between the read of a member and the write that replaces it, the name of the
+// parameter is destroyed. At -O0 only the names of the members of its class are
+// known. It stores no functions that could see the member, unlike a
+// std::function.
 #include <functional>
 #include <ros/ros.h>
 #include <string>

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// What is in an object of a class whose library describes it is not known here:
-// it may keep functions. And an operator of a library's is no operator new.
+// If only the library describes the class of an object, its contents are unknown
+// here: it may store functions. And not every operator of a library is operator new.
 #include <functional>
 #include <ros/ros.h>
 

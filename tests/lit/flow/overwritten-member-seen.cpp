@@ -1,10 +1,10 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A member that is overwritten later is seen before by what runs in between:
-// a method that is called, callbacks and other threads where the function
-// waits, and whoever reads it where it is atomic. What runs in between and
-// does not read it changes nothing.
+// A member that is overwritten later is seen earlier by code that runs in
+// between: a called method, callbacks and other threads if the function waits,
+// and any reader if it is atomic. Code that runs in between without reading it
+// changes nothing.
 #include <ros/ros.h>
 
 #include <atomic>

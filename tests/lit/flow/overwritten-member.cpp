@@ -3,9 +3,9 @@
 // RUN: %compile -O0 %s -o %t.0.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.0.o | FileCheck %s
 //
-// What a comparison puts into a member counts no more once the member is
-// overwritten on every way to the return; it does where one way is without
-// that, or the value is published before.
+// What a comparison puts into a member no longer counts if the member is
+// overwritten on every path to the return; it counts if one path does not
+// overwrite it, or if the value is published before.
 #include <ros/ros.h>
 
 void show(double Value);
@@ -50,7 +50,7 @@ void Node::step(double V, bool Odd, Node &Second) {
   send(Early);
   Early = 0;
 
-  // Another object's member is another variable.
+  // A member of another object is another variable.
   // CHECK-DAG: parameter 'elsewhere' {{.*}} at [[#@LINE+1]]:13
   Other = V > Elsewhere ? 1 : 0;
   Second.Other = 0;

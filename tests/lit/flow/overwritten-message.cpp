@@ -1,9 +1,9 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A message that is a member, or handed to a function by reference, shows what
-// was put into it last; what another function puts in before is overwritten,
-// what it puts in after is not.
+// A message that is a member, or that a function gets by reference, shows the
+// last write into it; what another function writes before is overwritten, what
+// it writes after is not.
 #include <ros/ros.h>
 
 struct Node {

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// Text that is assigned anew counts no more, text that is appended to does; that
-// two texts are assigned the same literal makes nothing of them the same.
+// Text that is assigned again no longer counts, text that is appended to does;
+// two texts that are assigned the same literal do not become one.
 #include <ros/ros.h>
 
 struct Text {

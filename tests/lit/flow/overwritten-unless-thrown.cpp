@@ -1,9 +1,9 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A member that is overwritten behind a call which throws keeps its value where
-// it throws: for the handler, and, where that is in a caller, for everybody.
-// Where nothing is thrown, or the handler overwrites it as well, nobody sees it.
+// A member that is overwritten behind a call keeps its value if the call
+// throws: the handler sees it and, if that is in a caller, everybody. If
+// nothing is thrown, or the handler overwrites it too, nobody sees it.
 #include <ros/ros.h>
 
 struct Node {

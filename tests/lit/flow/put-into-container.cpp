@@ -1,9 +1,9 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// What is put into a container is not changed by that, so that what decides
-// about it does not decide what is published; what is taken over from one by
-// swap is.
+// Putting an object into a container does not change the object, so what
+// controls that does not decide what is published; what swap takes over from a
+// container does.
 #include <ros/ros.h>
 
 #include <vector>

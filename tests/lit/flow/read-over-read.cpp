@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A variable that a second parameter is read into holds the first no more,
-// where the read has a default; getParam may leave it as it was.
+// A variable that a second parameter is read into no longer holds the first if
+// the read has a default; getParam may leave it unchanged.
 #include <ros/ros.h>
 
 void step(ros::NodeHandle &Handle, ros::Publisher &Out, double V) {

@@ -3,9 +3,9 @@
 // RUN: %compile -O0 %s -o %t.0.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.0.o | FileCheck %s
 //
-// A member that is computed anew right after the read has only the new value
-// elsewhere; where that happens under a condition, or a method that is called
-// in between reads it, it can have either.
+// A member that is recomputed directly after the read has only the new value
+// elsewhere. If that depends on a condition, or a method called in between
+// reads it, it can have either value.
 #include <ros/ros.h>
 
 #include <cmath>

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A parameter that one call brings to the other side, where the outcome decides
-// nothing, is reported where another call's outcome does.
+// A parameter that one call brings to the other side, with an outcome that
+// decides nothing, is reported where the outcome of another call decides.
 #include <ros/ros.h>
 
 static int Limit;

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A parameter is reported on the side where one call has it, whatever side it
-// has by a shorter way in a call whose outcome decides something else.
+// A parameter is reported on the side where one call has it, even if a shorter path
+// in another call, whose outcome decides something else, has it on the other side.
 #include <ros/ros.h>
 
 static int Limit, Kept;

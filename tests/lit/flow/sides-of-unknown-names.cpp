@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// Two parameters whose names depend on what runs are not taken for one: both
-// sides are reported, though one is farther from its read.
+// Two parameters whose names depend on the call are not taken for one: both
+// sides are reported, although one is farther from its read.
 #include <ros/ros.h>
 
 struct Node {

@@ -1,7 +1,7 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A value times its negative is its square, negated, for integers as well.
+// A value times its negative is its square, negated; also for integers.
 #include <ros/ros.h>
 
 static double Radius;

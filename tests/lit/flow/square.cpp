@@ -1,7 +1,7 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// The square of a member, and of what a reference leads to, wherever it leads:
+// The square of a member, and of the target of a reference, whatever that is:
 // the variable is read twice at one address.
 #include <ros/ros.h>
 

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// All fields come along in a copy of an object, into a local variable and into
-// an argument.
+// A copy of an object into a local variable and into an argument copies all of
+// its fields.
 #include <ros/ros.h>
 
 struct Limits {

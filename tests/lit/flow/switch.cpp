@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A switch on a parameter is a flag, on what was computed from one a derived
-// one.
+// A switch on a parameter is a flag; a switch on a value computed from one is a
+// derived comparison.
 #include <ros/ros.h>
 
 enum Mode { Slow, Fast };

@@ -4,8 +4,8 @@
 // RUN: %t | FileCheck %s
 // RUN: %python -c "import json,sys; c=[x for x in json.load(open(sys.argv[1]))['comparisons'] if x['source']]; assert len(c) == 1, c; assert c[0]['distance'] == 1 and c[0]['lineno'] == int(sys.argv[2]), c" %t.json 20
 //
-// The instances of a template are one comparison, at the smallest distance, and
-// all of them report under its key.
+// The instances of a template are one comparison, with the smallest distance,
+// and all of them report under its key.
 #include <ros/ros.h>
 
 static ros::Publisher Out;
@@ -13,10 +13,10 @@ static double Limit;
 static int Last;
 
 template <typename T> struct Above {
-  // The instance for int decides a publish at once, that for double by a
-  // member that a later condition reads.
+  // The instance for int decides a publish directly, the one for double through
+  // a member that a later condition reads.
   static __attribute__((noinline)) bool is(T V) {
-    // One line:
+    // On one line:
     return V > Limit;
   }
 };

@@ -2,8 +2,8 @@
 // RUN: %opt -disable-output -passes=tpc -tpc-link-unit=node -tpc-static-info=%t.json %t.o
 // RUN: FileCheck %s --input-file=%t.json
 //
-// A comparison of a text parameter whose outcome decides nothing is none of the
-// findings, and no trouble.
+// A comparison of a text parameter whose outcome decides nothing is not a
+// finding, and causes no failure.
 // CHECK: "comparisons": 0,
 // CHECK: "status": "ok"
 #include <ros/ros.h>

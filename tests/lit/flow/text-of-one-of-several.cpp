@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o 2>&1 | FileCheck %s
 //
-// A text that is replaced in an object of which there are several, before that is
-// published: what was in it before may be in another one. The analysis goes on.
+// A text is replaced in one of several objects before that is published: its
+// former value may be in another object. The analysis does not fail.
 #include <ros/ros.h>
 
 #include <string>
@@ -15,7 +15,7 @@ struct Note : std_msgs::Number {
 // CHECK-NEXT: parameter 'limit' relation > {{.*}} at [[#@LINE+6]]
 static void send(ros::Publisher &Out, Note *Object, const std::string &Frame, double Value,
                  double Limit) {
-  // One of those that were handed in.
+  // One of the objects passed in.
   Object->Frame = Frame;
   Object->data = 0;
   if (Value > Limit)

@@ -3,8 +3,8 @@
 // RUN: %compile -O0 %s -o %t.0.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.0.o | FileCheck %s
 //
-// Text is compared by operators and methods of std::string, and goes on through
-// copies, members, locals and references.
+// Text is compared by operators and methods of std::string, and is followed
+// through copies, members, locals and references.
 #include <ros/ros.h>
 
 struct Node {

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// The relation is told with the threshold on the right-hand side, whichever
-// side it stands on.
+// The relation is given with the threshold on the right, whichever side it is
+// on in the source.
 #include <ros/ros.h>
 
 void step(ros::NodeHandle &Handle, ros::Publisher &Out, double Value) {

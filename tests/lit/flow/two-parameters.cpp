@@ -1,7 +1,7 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A comparison of two parameters is one of each.
+// A comparison of two parameters is a comparison with each of them.
 #include <ros/ros.h>
 
 void step(ros::NodeHandle &Handle, ros::Publisher &Out) {

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// Of several ways to a comparison the one with the simplest arithmetic is told,
-// whichever is written first.
+// If there are several paths to a comparison, the one with the simplest
+// arithmetic is reported, whichever comes first.
 #include <ros/ros.h>
 
 bool chance();

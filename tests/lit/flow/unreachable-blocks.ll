@@ -1,8 +1,8 @@
 ; RUN: %opt -disable-output -passes=tpc -tpc-max-memory=256 -tpc-link-unit=unit -tpc-static-info=%t.json %s
 ; RUN: FileCheck %s --input-file=%t.json
 ;
-; In blocks that nothing reaches, IR allows a value that is computed from
-; itself. They are left out, and the analysis ends.
+; In unreachable blocks, IR allows a value that is computed from itself. Such
+; blocks are ignored, and the analysis ends.
 ; CHECK: "functions": 1
 ; CHECK: "status": "ok"
 define i32 @f(ptr %p, i1 %c) {

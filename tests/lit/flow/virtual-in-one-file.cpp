@@ -1,10 +1,10 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-callgraph>,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// Virtual calls of classes whose debug information has no name across files:
-// those whose table of virtual functions is in this file, for their first
-// virtual function that is not inline is, and those that no other file can
-// name.
+// Virtual calls of classes whose debug information has no name across
+// files: classes whose vtable is in this file, because their first
+// virtual function that is not inline is, and classes that no other file
+// can name.
 #include <ros/ros.h>
 
 #include <cmath>
@@ -44,7 +44,7 @@ class Faulty : public Pursuit {
   }
 };
 
-// Of a template: its name alone does not say how it is mangled.
+// For a template, the name alone does not say how it is mangled.
 template <typename T> struct Band {
   virtual bool holds(T) const { return true; }
   T Width;

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// Which of the classes behind an interface is chosen decides what a virtual call
-// does: whether something is published, or which value.
+// The choice between the classes behind an interface decides what a virtual
+// call does: whether something is published, or which value.
 #include <ros/ros.h>
 
 #include <memory>
@@ -44,7 +44,7 @@ struct Node {
       Scaling = new Loud;
     else
       Scaling = new Way;
-    // On this one nothing is called but its destructor.
+    // Only the destructor of this one is called.
     if (sensed() < Idle)
       Silent = new Loud;
   }

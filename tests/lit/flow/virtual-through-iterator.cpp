@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// begin(), which stays a call, returns an object with a pointer in it: what that
-// leads to is known by the class of the object.
+// begin(), which stays a call, returns an object with a pointer in it: the
+// class of the object says what the pointer leads to.
 // CHECK: comparisons of {{.*}}: 1
 // CHECK-NEXT: parameter 'limit' relation > as x
 #include <memory>

@@ -3,8 +3,8 @@
 // RUN: %link -O2 %t.o %t.ros.o -o %t
 // RUN: env PARAM_p=0 PARAM_q=5 %t | FileCheck %s
 //
-// A function whose assembly defines a name is not copied for its calls: two of
-// them would not be linked.
+// A function whose assembly defines a symbol is not copied for its calls: the
+// linker would reject two of them.
 // CHECK: report 1 cmp 1 thresh 0
 // CHECK: published out 0
 // CHECK: report 0 cmp 2 thresh 5

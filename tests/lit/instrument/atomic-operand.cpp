@@ -3,8 +3,8 @@
 // RUN: %link -O2 %t.o %t.ros.o -o %t
 // RUN: env PARAM_p=1 %t | FileCheck %s
 //
-// What an atomic update gives back is compared with the parameter, and
-// reported; it stays one update.
+// The result of an atomic update is compared with the parameter, and reported;
+// it stays a single update.
 // CHECK: report 0 cmp 0 thresh 1
 // CHECK: report 0 cmp 1 thresh 1
 // CHECK: report 1 cmp 2 thresh 1

@@ -7,9 +7,9 @@
 // RUN: env PARAM_limit=1 PARAM_other=5 %t > %t.all
 // RUN: grep -v report %t.all | diff %t.expected -
 //
-// A function that jumps to labels by their addresses, which a table holds, runs
-// as before: it reads two parameters for its callers and is not copied for
-// them, and comparisons inside it are reported.
+// A function that jumps to labels by their addresses in a table runs as before:
+// it reads two parameters for its callers and is not copied for them, and
+// comparisons inside it are reported.
 #include <ros/ros.h>
 
 #include <cstdio>

@@ -7,8 +7,8 @@
 // RUN: %link -O2 -Wl,-mllvm,-tpc-constants %t.o %t.other.o %t.ros.o -o %t.all
 // RUN: %t.all | FileCheck %s --check-prefix=WITH
 //
-// Comparisons with constants are in the static information always, and are
-// reported where that is asked for.
+// Comparisons with constants are always in the static information; they are
+// reported if an option asks for it.
 #include <ros/ros.h>
 
 // WITHOUT-NOT: report

@@ -11,8 +11,8 @@
 // RUN: %link -O2 -Wl,-mllvm,-tpc-link-unit=node %t.o %t.1.o %t.2.o %t.3.o %t.ros.o -o %t.three
 // RUN: env PARAM_p=11 PARAM_q=22 PARAM_a=3 PARAM_b=4 PARAM_c=5 PARAM_d=6 %t.three | diff %t.expected -
 //
-// Functions are copied for each of their calls, in several rounds. That works
-// out the same where other files are linked, whose functions have one name.
+// Functions are copied for each of their calls, in several rounds. The result is
+// the same if other files are linked too, whose functions have the same name.
 // CHECK: report 0 cmp 1 thresh 3 {{.*}} key [[A:....]]
 // CHECK-NEXT: report 0 cmp 1 thresh 4 {{.*}} key [[B:....]]
 // CHECK-NEXT: report 0 cmp 1 thresh 5 {{.*}} key [[C:....]]

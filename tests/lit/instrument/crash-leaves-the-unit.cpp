@@ -10,10 +10,10 @@
 // RUN: %link -O2 -Wl,-mllvm,-tpc-inject-failure=allocation -Wl,-mllvm,-tpc-link-unit=node %t.o %t.ros.o -o %t.allocation 2>&1 | FileCheck %s --check-prefix=WARN
 // RUN: %t.allocation | FileCheck %s --implicit-check-not=report
 //
-// A crash inside the analysis costs one warning and a record, not the build:
-// the program is linked without reports. So does a stack that is used up, what
-// LLVM calls a fatal error, and memory that is not there.
-// WARN: warning: node: the analysis crashed; this link unit is left as it was
+// A crash inside the analysis costs one warning and an entry in the file, not
+// the build: the program is linked without reports. The same holds for a stack
+// overflow, a fatal error of LLVM, and memory that runs out.
+// WARN: warning: node: the analysis crashed; this link unit is not changed
 // WARN-NOT: {{.}}
 // CHECK: published out 3
 // JSON-DAG: "status": "failed"

@@ -3,7 +3,7 @@
 // RUN: %link -O2 %t.o %t.ros.o -o %t
 // RUN: %t | FileCheck %s
 //
-// Exceptions go through instrumented code as before.
+// Exceptions pass through instrumented code as before.
 // CHECK: report 0 cmp 1 thresh 2 res 0
 // CHECK-NEXT: published out 1
 // CHECK-NEXT: report 1 cmp 3 thresh 2 res 1

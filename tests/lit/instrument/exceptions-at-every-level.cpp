@@ -14,9 +14,9 @@
 //
 // Exceptions that are thrown between reports, through destructors that compare
 // and report, out of a condition and again out of a handler, arrive as before.
-// Limit is 2. check(1): 1 > 2 is false, and so it is in ~Mark. check(3): 3 > 2, throws 3 out of the
-// condition; on the way ~Mark compares 3 with the limit and publishes. The
-// handler throws 3 + 1, and again a Mark (of 4) is on the way.
+// Limit is 2. check(1): 1 > 2 is false, in ~Mark too. check(3): 3 > 2 throws 3
+// out of the condition; during unwinding ~Mark compares 3 with the limit and
+// publishes. The handler throws 3 + 1, and another Mark (of 4) is unwound.
 // CHECK: report 0 cmp 1 thresh 2 res 0
 // CHECK-NEXT: published checked 1
 // CHECK-NEXT: report 0 cmp 1 thresh 2 res 0

@@ -6,8 +6,8 @@
 // RUN: %link -O2 %t.2.o %t.ros.o -o %t.2
 // RUN: %t.2 | FileCheck %s
 //
-// A comparison in std::max or std::clamp is reported where it is made, at -O0
-// as well.
+// A comparison in std::max or std::clamp is reported where it is made, also at
+// -O0.
 #include <ros/ros.h>
 
 #include <algorithm>

@@ -7,7 +7,7 @@
 // RUN: %t.2 | FileCheck %s
 //
 // Comparisons that form one predicate without control flow: result is the
-// predicate's outcome, res the comparison's own; so also where the predicate
+// outcome of the predicate, res that of the comparison; also if the predicate
 // is in the caller.
 #include <ros/ros.h>
 

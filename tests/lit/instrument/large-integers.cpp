@@ -6,7 +6,7 @@
 // RUN: %link -O2 %t.2.o %t.ros.o -o %t.2
 // RUN: %t.2 | FileCheck %s
 //
-// Integers that no double holds: the outcome is exact, the values are rounded.
+// Integers that no double can hold: the outcome is exact, the values are rounded.
 #include <ros/ros.h>
 
 int main(int Argc, char **) {

@@ -9,9 +9,9 @@
 // RUN: %opt -S -passes=tpc %t.o | FileCheck %s --check-prefix=REPORTS
 //
 // What reports need (std::max inlined, `load` copied for each of its calls) is
-// not done to a unit that gets none: not where the analysis fails when it has
-// seen all, and not where only its static information is asked for.
-// CHECK: warning: node: the analysis crashed; this link unit is left as it was
+// not done to a link unit that gets none: neither if the analysis fails at its
+// end, nor if only the static information is requested.
+// CHECK: warning: node: the analysis crashed; this link unit is not changed
 // REPORTS-DAG: call void @_Z7log_onePcbddb
 // REPORTS-DAG: define internal {{.*}} @_Z4loadRN3ros10NodeHandleEPKcRd.tpc.1(
 #include <ros/ros.h>

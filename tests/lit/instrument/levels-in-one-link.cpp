@@ -4,8 +4,8 @@
 // RUN: %link %t.3.o %t.0.o %t.ros.o -o %t
 // RUN: llvm-objdump -d --no-show-raw-insn --disassemble-symbols=main,_Z5otheri %t | FileCheck %s
 //
-// Where a link has files of several levels, the ones of -O0 stay as they are
-// and the others are optimised.
+// If a link has files of several levels, those of -O0 are not optimised and the
+// others are.
 #include <ros/ros.h>
 
 // CHECK-LABEL: <main>:

@@ -4,7 +4,7 @@
 // RUN: %t | FileCheck %s
 // RUN: FileCheck %s --check-prefix=JSON --input-file=%t.json
 //
-// Two comparisons that a macro puts at one place have two keys.
+// Two comparisons that a macro puts at one place have different keys.
 #include <ros/ros.h>
 
 #define NEAR(V, L) ((V) < (L) && (V) > -(L))

@@ -4,8 +4,8 @@
 // RUN: %t | FileCheck %s --implicit-check-not=report
 // RUN: FileCheck %s --check-prefix=JSON --input-file=%t.json
 //
-// As with time, so with memory: one warning, a record, no reports.
-// WARN: warning: node: the analysis takes more than 64 MiB (more: -tpc-max-memory, TPC_MAX_MEMORY in CMake); this link unit is left as it was
+// As for time, so for memory: one warning, an entry in the file, no reports.
+// WARN: warning: node: the analysis takes more than 64 MiB (-tpc-max-memory raises the limit, TPC_MAX_MEMORY in CMake); this link unit is not changed
 // WARN-NOT: {{.}}
 // CHECK: published out 3
 // JSON-DAG: "failure": "the analysis takes more than 64 MiB

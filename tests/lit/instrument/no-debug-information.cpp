@@ -4,8 +4,8 @@
 // RUN: %t | FileCheck %s --implicit-check-not=report
 // RUN: FileCheck %s --check-prefix=JSON --input-file=%t.json
 //
-// Without debug information there are no places: nothing is reported, it is
-// counted, and the program is linked.
+// Without debug information there are no places: nothing is reported, the
+// comparisons are counted, and the program is linked.
 // CHECK: published out 3
 // JSON: "kind": "without_debug_info",
 // JSON-NEXT: "lineno": 0,

@@ -6,8 +6,8 @@
 // RUN: %link -O2 %t.2.o %t.ros.o -o %t.2
 // RUN: %t.2 | FileCheck %s
 //
-// With a value that is no number the outcome is the program's: every comparison
-// is false but !=.
+// If a value is not a number, the outcome is that of the program: every
+// comparison is false, except !=.
 #include <ros/ros.h>
 
 #include <cmath>

@@ -8,9 +8,9 @@
 // RUN: %link %t.o %t.alone.o %t.switch.o %log-library -Wl,-rpath,%{log-folder} -o %t.logs
 // RUN: env TPC_SINK=off %t.logs | FileCheck %s --check-prefix=OFF
 //
-// Whether reports are wanted is looked at before each call, in a variable of
-// the program that the log library finds: after the first report of a process
-// whose sink is off, none is made.
+// Each call is guarded by a flag that says whether reports are wanted, a
+// variable of the program that the log library finds: in a process whose sink
+// is off, only the first report is made.
 #ifdef SWITCH
 
 extern "C" char tpc_reporting;

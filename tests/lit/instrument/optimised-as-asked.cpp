@@ -6,9 +6,9 @@
 // RUN: %link %t.0.o %t.ros.o -o %t.0
 // RUN: llvm-objdump -d --no-show-raw-insn --disassemble-symbols=main %t.0 | FileCheck %s --check-prefix=SLOW
 //
-// The program is optimised as far as was asked: at -O2 the helper is inlined
-// and its loop is a formula, at -O0 it is called. The level is the
-// compiler's, not the link's.
+// The program is optimised as requested: at -O2 the helper is inlined and its
+// loop becomes a formula, at -O0 it is called. The level is that of the
+// compiler, not of the link.
 #include <ros/ros.h>
 
 static int addUpTo(int N) {

@@ -3,7 +3,7 @@
 // RUN: %link -O2 -Wl,--export-dynamic %t.o %t.ros.o -o %t
 // RUN: %t | FileCheck %s
 //
-// A program's own log_one may compare and publish itself: it is not made to call
+// A program's own log_one may compare and publish: it must not be made to call
 // itself without end.
 #include <ros/ros.h>
 

@@ -6,9 +6,9 @@
 // RUN: env TPC_SINK=file TPC_POLICY=edges TPC_FOLDER=%t.folder %t.host %t.so | FileCheck %s
 // RUN: env TPC_SINK=off %t.host %t.so | FileCheck %s
 //
-// A plugin that reports can be unloaded as without reports, and loaded again;
-// the log library stays, because its helper thread may run. (What stands for
-// roscpp in these tests is kept from the real one by the version script.)
+// A plugin that reports can be unloaded and loaded again as without reports; the
+// log library stays, because its helper thread may be running. (The version script
+// keeps the replacement for roscpp in these tests apart from the real one.)
 #ifdef HOST
 
 #include <chrono>

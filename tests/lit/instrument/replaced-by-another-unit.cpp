@@ -4,9 +4,9 @@
 // RUN: %native -rdynamic %s %t.ros.o %t.so -o %t
 // RUN: env PARAM_low=1 PARAM_high=2 %t | FileCheck %s
 //
-// Where a program replaces a weak function of a library, the library's calls
-// run what they ran without the passes: the program's, and by the alias, which
-// nobody replaced, its own.
+// If a program replaces a weak function of a library, the calls in the library
+// run what they ran without the passes: the program's function and, through the
+// alias, which nobody replaced, its own.
 // CHECK: low 42 high 42 alias 2
 // CHECK: report 0 cmp 7 thresh 42
 #include <ros/ros.h>

@@ -12,10 +12,10 @@
 // RUN: %link -O3 -Wl,-mllvm,-tpc-link-unit=node %t.3.o %t.ros.o -o %t.3
 // RUN: %t.3 | FileCheck %s
 //
-// The instrumented program reports before each predicate and publishes what
-// it published before, at every level.
-// Values 0 to 6 against a limit of 2.5, of which the first three above it (3,
-// 4 and 5) are published. What is not reached by && is not reported.
+// The instrumented program reports before each predicate and publishes what it
+// published before, at every level. Values 0 to 6 are compared with a limit of
+// 2.5; the first three above it (3, 4 and 5) are published. An operand that &&
+// does not evaluate is not reported.
 // CHECK: report 0 cmp 0 thresh 0 res 0
 // CHECK-NEXT: report 0 cmp 0 thresh 2.5 res 0
 // CHECK-NEXT: report 0 cmp 0 thresh 0 res 0

@@ -7,7 +7,7 @@
 // RUN: %t.2 | FileCheck %s
 //
 // bool == bool is a comparison; a predicate is reported without the `!` before
-// it; `?:` is a predicate; each operand of && and || is one by itself.
+// it; `?:` is a predicate; each operand of && and || is a predicate of its own.
 #include <ros/ros.h>
 
 #include <cmath>

@@ -6,8 +6,8 @@
 // RUN: %link -O2 %t.2.o %t.ros.o -o %t.2
 // RUN: %t.2 | FileCheck %s
 //
-// A function that compares what it is handed reports for each call under the
-// parameter of that call, and for a call that hands it none not at all.
+// A function that compares its argument reports for each call under the
+// parameter of that call, and does not report for a call that passes none.
 #include <ros/ros.h>
 
 // Low is 1 and high is 100; with 10 the first call is true, the second false.

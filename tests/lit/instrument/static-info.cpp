@@ -3,7 +3,7 @@
 // RUN: %python -m json.tool --sort-keys %t.json %t.sorted
 // RUN: FileCheck %s --input-file=%t.sorted
 //
-// What is written down of a comparison.
+// What the file says about a comparison.
 // CHECK: "comparisons": [
 // CHECK: "column": 9,
 // CHECK-NEXT: "default": 4.5,

@@ -6,7 +6,7 @@
 // RUN: %link -O2 %t.2.o %t.ros.o -o %t.2
 // RUN: %t.2 | FileCheck %s
 //
-// Comparisons of text report their result alone, as both values.
+// Comparisons of text report only their result, as both values.
 #include <ros/ros.h>
 
 static __attribute__((noinline)) bool is(const std::string &Text,

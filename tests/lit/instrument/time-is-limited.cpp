@@ -4,10 +4,10 @@
 // RUN: %t | FileCheck %s --implicit-check-not=report
 // RUN: FileCheck %s --check-prefix=JSON --input-file=%t.json
 //
-// An analysis that takes more time than it may costs one warning, which says
-// what to do, and a record; the counts are as far as it came. The program is
-// linked without reports.
-// WARN: warning: node: the analysis takes more than 1 s (more: -tpc-max-seconds, TPC_MAX_SECONDS in CMake); this link unit is left as it was
+// An analysis that exceeds its time costs one warning, which says what to do,
+// and an entry in the file with the counts so far. The program is linked
+// without reports.
+// WARN: warning: node: the analysis takes more than 1 s (-tpc-max-seconds raises the limit, TPC_MAX_SECONDS in CMake); this link unit is not changed
 // WARN-NOT: {{.}}
 // CHECK: published out 3
 // JSON-DAG: "comparisons": 0,

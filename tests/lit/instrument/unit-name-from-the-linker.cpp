@@ -3,7 +3,7 @@
 // RUN: %link -shared -O2 -Wl,-mllvm,-tpc-static-info=%t.json %t.o -o %t.dir/libby.so
 // RUN: FileCheck %s --input-file=%t.json
 //
-// Without a name the link unit has that of the linker's output; shared
+// By default the link unit has the name of the linker's output; shared
 // libraries are link units too.
 // CHECK: "comparisons": 1,
 // CHECK: "link_unit": "libby.so"

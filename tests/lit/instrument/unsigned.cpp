@@ -6,7 +6,7 @@
 // RUN: %link -O2 %t.2.o %t.ros.o -o %t.2
 // RUN: %t.2 | FileCheck %s
 //
-// Numbers without a sign are reported as such, whatever the operator.
+// Unsigned numbers are reported as such, whatever the operator.
 #include <ros/ros.h>
 
 #include <cstdint>

@@ -3,10 +3,10 @@
 // RUN: %opt -disable-output -passes=tpc -tpc-link-unit=node -tpc-rules=%inputs/broken-rules.json %t.o 2>&1 | FileCheck %s --check-prefix=BROKEN
 //
 // The user's own rules: a function that reads a parameter, and one that
-// exposes. A file that is no JSON is a failure with its name, and the program
-// is linked all the same.
+// exposes. A file that is not JSON is a failure that names the file, and the
+// program is still linked.
 // CHECK: comparisons of {{.*}}: 1
-// BROKEN: warning: node: {{.*}}broken-rules.json: {{.*}}; this link unit is left as it was
+// BROKEN: warning: node: {{.*}}broken-rules.json: {{.*}}; this link unit is not changed
 namespace own {
 template <typename T> struct Box {
   T setting(const char *Name);

@@ -3,8 +3,8 @@
 // RUN: %compile -O2 %s -o %t.2.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-param-calls>' %t.2.o | FileCheck %s
 //
-// Names that are put together of constants are known whole; of the others the
-// constant parts are.
+// Names that are composed of constants are known completely; of other names,
+// the constant parts are.
 #include <ros/ros.h>
 
 static const std::string Prefix = "arm/";

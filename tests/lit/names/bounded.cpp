@@ -1,7 +1,7 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-param-calls>' %t.o | FileCheck %s
 //
-// A name that doubles with each line ends as unknown, not the analysis.
+// A name that doubles with each line becomes unknown; the analysis does not fail.
 #include <ros/ros.h>
 
 static std::string twice(const std::string &S) { return S + S; }

@@ -3,8 +3,8 @@
 // RUN: %compile -O0 %s -o %t.0.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-param-calls>,print<tpc-gather-results>' %t.0.o | FileCheck %s
 //
-// A constructor that is no inline function has two names for one body above
-// -O0; what its calls hand over is known all the same.
+// Above -O0, a constructor that is not inline has two names for one body; what
+// its calls pass is known anyway.
 #include <ros/ros.h>
 
 class Part {

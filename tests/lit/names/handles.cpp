@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-param-calls>' %t.o | FileCheck %s
 //
-// The constant namespace of a node handle stands before the name, wherever the
-// handle is kept and however it came there.
+// The constant namespace of a node handle is put before the name, wherever the
+// handle is stored and however it got there.
 #include <ros/ros.h>
 
 #include <memory>

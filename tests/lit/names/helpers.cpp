@@ -4,7 +4,7 @@
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-param-calls>' %t.2.o | FileCheck %s
 //
 // A name, a handle and a default that are arguments of a helper are those of
-// each call: of a template, two helpers deep, of a method.
+// each call: in a template, through two helpers, in a method.
 #include <ros/ros.h>
 
 template <typename T>

@@ -1,9 +1,9 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-param-calls>' %t.o | FileCheck %s
 //
-// What searchParam has found is a whole name: the handle's namespace does not
-// come before it again, also where the name is a member, or goes on behind it.
-// A name that nobody sought has it.
+// The result of searchParam is a complete name: the namespace of the handle is
+// not put before it again, also if the name is stored in a member, or extended.
+// It is put before a name that was not searched.
 #include <ros/ros.h>
 
 class Node {

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-extern-calls>,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// A lifecycle node's parameters, and the statements of ROS 2 that expose
-// besides a plain publish.
+// The parameters of a lifecycle node, and the exposing statements of ROS 2
+// other than a plain publish.
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
 
 struct Service {

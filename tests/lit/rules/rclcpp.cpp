@@ -3,8 +3,8 @@
 // RUN: %compile -O0 %s -o %t.0.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-param-calls>,print<tpc-gather-results>' %t.0.o | FileCheck %s
 //
-// The ways in which a node of ROS 2 reads a parameter: as a value, into a
-// variable, and as an object of which a method gives the value.
+// The ways in which a ROS 2 node reads a parameter: as a value, into a
+// variable, and as an object with a method that returns the value.
 #include <rclcpp/rclcpp.hpp>
 
 // CHECK-DAG: parameter reads of {{.*}}: 12

@@ -2,8 +2,8 @@
 // RUN: %compile-real -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-param-calls>,print<tpc-extern-calls>' %t.o | FileCheck %s
 //
-// Every row for what is installed fits the real headers: all forms and types of
-// the reads, and the statements of actionlib, tf and tf2.
+// Each row for an installed package matches the real headers: all forms and
+// types of the reads, and the statements of actionlib, tf and tf2.
 #include <actionlib/TestAction.h>
 #include <actionlib/client/simple_action_client.h>
 #include <actionlib/server/action_server.h>

@@ -1,7 +1,7 @@
 ; RUN: %opt -disable-output -passes='print<tpc-class-object-access>' %s | FileCheck %s
 ;
-; ClassObjectAccess: which element of an array a pointer leads to, in whatever
-; way it is computed.
+; ClassObjectAccess: which element of an array a pointer leads to, however it is
+; computed.
 target datalayout = "e-m:e-i64:64-n32:64-S128"
 %class.Pair = type { i32, i32 }
 %class.Table = type { double, [3 x %class.Pair], [2 x [3 x i32]] }
@@ -9,7 +9,7 @@ target datalayout = "e-m:e-i64:64-n32:64-S128"
 @numbers = global [8 x i32] zeroinitializer
 @pairs = global [4 x %class.Pair] zeroinitializer
 
-; A way through an array goes on into the classes that are its elements.
+; A path through an array continues into the class of its elements.
 ; CHECK-LABEL: accesses of
 ; CHECK-NEXT: load [class.Pair.1] in fieldBehindArray
 define i32 @fieldBehindArray(ptr %p) {
@@ -18,7 +18,7 @@ define i32 @fieldBehindArray(ptr %p) {
   ret i32 %v
 }
 
-; 1 of a class's array; in rows of three, the last of the second is number 5.
+; Element 1 of a class's array; in rows of three, the last of the second is number 5.
 ; CHECK-NEXT: load [class.Table.1][1][class.Pair.0] in fields
 ; CHECK-NEXT: load [class.Table.2][5] in fields
 define i32 @fields(ptr %t) {
@@ -31,8 +31,8 @@ define i32 @fields(ptr %t) {
   ret i32 %sum
 }
 
-; At the beginning, by bytes (12 = 3 * 4), by elements one after the other
-; (1 + 2), before the beginning, and at what is not known.
+; At the beginning, by bytes (12 = 3 * 4), by elements in two steps (1 + 2),
+; before the beginning, and at an unknown index.
 ; CHECK-NEXT: load @numbers[0] in global
 ; CHECK-NEXT: load @numbers[3] in global
 ; CHECK-NEXT: load @numbers[3] in global
@@ -66,8 +66,8 @@ define void @objects(i64 %i) {
   ret void
 }
 
-; What is loaded at once: the two that follow the sixth; of pairs the second
-; half of one and the first of the next.
+; What one load reads: the two after the sixth; for pairs, the second half of
+; one and the first half of the next.
 ; CHECK-NEXT: load @numbers[6] in atOnce
 ; CHECK-NEXT: load @numbers[7] in atOnce
 ; CHECK-NEXT: load @pairs[1][class.Pair.1] in atOnce
@@ -80,7 +80,7 @@ define void @atOnce() {
   ret void
 }
 
-; A pointer that goes on and on: the first element, then any.
+; A pointer that moves on in a loop: the first element, then any.
 ; CHECK-NEXT: load @numbers[0] in walk
 ; CHECK-NEXT: load @numbers[any] in walk
 define void @walk(ptr %end) {

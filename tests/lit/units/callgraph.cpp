@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-callgraph>' %t.o | FileCheck %s
 //
-// SimpleCallGraph: a function and the calls of it; what is called through a
-// pointer is counted.
+// SimpleCallGraph: a function and the calls of it; calls through a pointer are
+// counted.
 void leaf();
 
 static void middle() { leaf(); }

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-class-object-access>' %t.o | FileCheck %s
 //
-// ClassObjectAccess: loads and stores of a field, by the way to it from the
-// class or the variable.
+// ClassObjectAccess: loads and stores of a field, by its path from the class or
+// the variable.
 struct Inner {
   int A, B;
 };

@@ -2,8 +2,8 @@
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-extern-calls>' %t.o | FileCheck %s
 //
 // ExternCallFinder: publish and service call, with the name that a constant
-// gave the object, however it came into its variable; a call inside ROS's own
-// code is none.
+// gave the object, however it got into its variable; calls inside ROS's own
+// code do not count.
 #include <ros/ros.h>
 
 class Node {

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
-// GatherResults: a comparison with a parameter and a predicate that is
-// exposed make a result only together.
+// GatherResults: only a comparison with a parameter together with an exposed
+// predicate makes a result.
 #include <ros/ros.h>
 
 int Count;

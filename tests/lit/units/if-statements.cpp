@@ -2,8 +2,8 @@
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-if-statements>' %t.o | FileCheck %s
 //
 // IfStatements: a block and the branches that control it, with a loop that is
-// entered by the function and by itself. An if's branch stands where the if
-// stands, or (later than clang 19) where its condition does.
+// controlled by the entry and by itself. The branch of an if has the place of
+// the if or (after clang 19) that of its condition.
 int f(int A, int B) {
   // CHECK: predicates of {{.*}}: 3
   // CHECK: _Z1fii %[[#]] controlled by entry

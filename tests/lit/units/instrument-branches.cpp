@@ -1,9 +1,9 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-instrument-branches>' %t.o | FileCheck %s
 //
-// InstrumentBranches: a report stands before the predicate, or where the
-// comparison is evaluated if its values do not come to the predicate. (An if's
-// branch stands where the if does; later than clang 19, where its condition.)
+// InstrumentBranches: a report stands before the predicate or, if its values do
+// not reach the predicate, where the comparison is evaluated. (The branch of an
+// if has the place of the if; in versions after clang 19, that of its condition.)
 #include <ros/ros.h>
 
 double Limit;

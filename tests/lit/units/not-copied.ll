@@ -1,7 +1,7 @@
 ; RUN: %opt -passes=tpc -S %s | FileCheck %s
 ;
 ; A function that another link unit may replace is not copied for its calls, and
-; is not called by the name of the definition that stands here.
+; an alias is not resolved to the definition in this file.
 ; CHECK: define weak i32 @replaceable
 ; CHECK-NOT: @replaceable.tpc
 ; CHECK: call i32 @replaceable(

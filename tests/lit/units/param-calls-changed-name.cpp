@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-param-calls>' %t.o | FileCheck %s
 //
-// A name is what the last change before the read made of it, on every way to
-// the read; where the ways differ it is not known.
+// A name is what the last change before the read made it, on every path to the
+// read; if the paths differ, it is not known.
 #include <ros/ros.h>
 
 void load(ros::NodeHandle &Handle, double &A, double &B, bool Left) {

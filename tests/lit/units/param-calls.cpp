@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-param-calls>' %t.o | FileCheck %s
 //
-// ParamCallFinder: name, type and default of the reads; a name that is
-// computed is dynamic as far as it is computed; what param() does inside is no read of the user's.
+// ParamCallFinder: name, type and default of the reads; the computed part of a
+// name is dynamic; the inside of param() is not a read by the user.
 #include <ros/ros.h>
 
 void load(ros::NodeHandle &Handle, const std::string &Prefix) {

@@ -1,8 +1,8 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-param-usage>' %t.o | FileCheck %s
 //
-// ParamUsageFinder: where a value is compared, what was done to it before,
-// and which predicates the outcome decides, with whether it comes to them
+// ParamUsageFinder: where a value is compared, the arithmetic before, and
+// which predicates the outcome decides, with whether it reaches them
 // unmerged.
 #include <ros/ros.h>
 

@@ -1,6 +1,6 @@
 ; RUN: %opt -disable-output -passes='print<tpc-points-to>' %s | FileCheck %s
 ;
-; PointsTo: pointers are followed through merges, arguments, results and memory.
+; PointsTo: pointers are followed through phis, arguments, results and memory.
 target datalayout = "e-m:e-i64:64-n32:64-S128"
 %class.Node = type { ptr, i32 }
 
@@ -8,7 +8,7 @@ target datalayout = "e-m:e-i64:64-n32:64-S128"
 @two = global i32 0
 @kept = global ptr null
 
-; Either of what is merged.
+; Any operand of a phi.
 ; CHECK-LABEL: pointers of
 ; CHECK-NEXT: %either in choose leads to @one @two
 define void @choose(i1 %c) {
@@ -17,7 +17,7 @@ define void @choose(i1 %c) {
   ret void
 }
 
-; What all calls hand over; a field is that of any object of its class.
+; What the calls pass; a field is that of any object of its class.
 ; CHECK-NEXT: %p in set leads to @one @two
 ; CHECK-NEXT: %n in set leads nowhere that is known
 ; CHECK-NEXT: %field in set leads to [class.Node.1]
@@ -28,7 +28,7 @@ define void @set(ptr %p, ptr %n) {
   ret void
 }
 
-; A result that is an argument is that of the very call.
+; A result that is an argument is the argument of this very call.
 ; CHECK-NEXT: %a in same leads to @one @two
 ; CHECK-NEXT: %first in calls leads to @one
 ; CHECK-NEXT: %second in calls leads to @two
@@ -45,7 +45,7 @@ define void @calls(i1 %c) {
   ret void
 }
 
-; What is stored to a variable is found by those who load it.
+; Loads of a variable find what is stored to it.
 ; CHECK-NEXT: %found in load leads to @two
 define void @keep() {
   store ptr @two, ptr @kept

@@ -1,6 +1,6 @@
 ; RUN: %opt -disable-output -passes='print<tpc-visible-writes>' %s | FileCheck %s
 ;
-; VisibleWrites: of all writes of a variable, those that a read can see.
+; VisibleWrites: the writes of a variable that a read can see.
 target datalayout = "e-m:e-i64:64-n32:64-S128"
 
 @shared = global i32 0
@@ -23,8 +23,8 @@ define i32 @other() {
   ret i32 %w
 }
 
-; Both of two ways to a local variable's read; a call that is handed the
-; variable writes it, and replaces nothing.
+; Both of two paths to the read of a local variable; a call that gets a pointer
+; to the variable writes it, and replaces nothing.
 ; CHECK-NEXT: %x in local
 ; CHECK-NEXT: store i32 3, ptr %variable, align 4 in local
 ; CHECK-NEXT: store i32 4, ptr %variable, align 4 in local

@@ -13,8 +13,8 @@
 // RUN: ./whole | FileCheck %s --check-prefix=REPORTS
 // RUN: ./parted | FileCheck %s --check-prefix=REPORTS
 //
-// A hand-written build: the archive's bitcode is part of the program, the shared
-// library is a link unit of its own, and each comparison is where it was linked.
+// A hand-written build: the bitcode in the archive is part of the program, the shared
+// library is a link unit of its own, and each comparison is listed where it was linked.
 // CHECK: "file": "node.cpp"
 // CHECK: "source": "limit"
 // CHECK: "link_unit": "{{whole|step}}"

@@ -4,5 +4,5 @@
 // RUN: %tpc-clang++ -include-pch all.h.pch %s -o one && not ./one
 // RUN: %tpc-clang++ -include all.h -c %s -o two.o && %tpc-clang++ two.o -o two && not ./two
 //
-// A header is compiled in advance without -c, and nothing is linked.
+// A header is precompiled without -c, and nothing is linked.
 int main() { return seven(); }

@@ -76,7 +76,7 @@ private:
   bool enable_baro_ctrl_mode_;
 };
 
-/// Yaw rate from the error in yaw, or the rate that is asked for.
+/// Yaw rate from the error in yaw, or the requested rate.
 class YawController {
 public:
   explicit YawController(ros::NodeHandle &private_nh);

@@ -1,4 +1,4 @@
-// What the simulated camera sees: the person, and what only looks like one.
+// What the simulated camera sees: the person, and things that look like one.
 #ifndef IMAGE_CAPTURE_CAMERA_MODEL_H
 #define IMAGE_CAPTURE_CAMERA_MODEL_H
 
@@ -18,7 +18,7 @@ struct Person {
   double y = 0.0;
 };
 
-/// What is seen of something upright: m, and 0 to 1.
+/// How an upright object is seen: m, and 0 to 1.
 struct Upright {
   double width = 0.0;
   double height = 0.0;
@@ -52,7 +52,7 @@ private:
   void schedulePhantom(double after);
 
   simulated_world::Noise noise_;
-  /// Apart: when the sun comes through does not depend on what else is seen.
+  /// Separate: when the sun comes through does not depend on what else is seen.
   simulated_world::Noise leaves_;
   Phantom phantom_;
   bool phantom_placed_ = false;

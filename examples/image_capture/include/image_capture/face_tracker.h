@@ -14,11 +14,11 @@ class FaceTracker {
 public:
   explicit FaceTracker(ros::NodeHandle &private_nh);
 
-  /// True if the image shows the tracked face; where none is tracked, the best
+  /// True if the image shows the tracked face. If none is tracked, the best
   /// face of the image becomes the tracked one.
   bool update(const FaceArray &image, const ros::Time &now);
 
-  /// Seen in so many images that it is taken for a person.
+  /// Seen in so many images that it counts as a person.
   bool identified() const;
   /// Not seen for too long.
   bool lost(const ros::Time &now) const;

@@ -7,8 +7,8 @@ namespace image_capture {
 /// `value`, cut to [-limit, limit].
 double clampMagnitude(double value, double limit);
 
-/// 0 within `width` of 0. Outside, the value keeps its size, or is moved
-/// towards 0 by the width where `collapse` asks for an output without a step.
+/// 0 within `width` of 0. Outside, the value keeps its size or, with
+/// `collapse`, is moved towards 0 by the width, so that the output has no step.
 double applyDeadband(double value, double width, bool collapse);
 
 /// The same angle in (-pi, pi].

@@ -78,7 +78,7 @@ private:
   ros::Timer tick_timer_;
   ros::Timer status_timer_;
 
-  /// What it flies along from the start: a gate, then the point of the search.
+  /// The points that it flies along from the start: a gate, then the point of the search.
   struct Point {
     double x = 0.0;
     double y = 0.0;

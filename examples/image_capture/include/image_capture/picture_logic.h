@@ -15,10 +15,10 @@ public:
 
   /// The face is neither too small nor too large in the image.
   bool coverageInRange(double coverage) const;
-  /// The face stands near the middle of the image.
+  /// The face is near the middle of the image.
   bool centred(double offset_x) const;
   /// The face is too small or too large in the image; `distance` becomes the
-  /// distance to the person from which it should do, in m.
+  /// distance to the person, in m, at which it would have the right size.
   bool needsMove(double coverage, double &distance) const;
   /// Neither out of pictures nor too soon after the last one.
   bool mayCapture(const ros::Time &now) const;
@@ -27,7 +27,7 @@ public:
 
   void noteCapture(const ros::Time &now);
   bool albumFull() const;
-  /// One entry for each picture that is wanted: 1 where it was taken.
+  /// One entry for each wanted picture: 1 if it was taken.
   std::vector<std::uint8_t> album() const;
   int selfies() const { return selfies_; }
 

@@ -11,7 +11,7 @@
 
 namespace image_capture {
 
-/// What the monitor looks at; metres from the start, volts.
+/// The measurements that the monitor checks; metres from the start, volts.
 struct SafetySample {
   double x = 0.0;
   double y = 0.0;
@@ -24,8 +24,8 @@ public:
   /// Reads its limits below `private_nh` and advertises /safety/alarm.
   SafetyMonitor(ros::NodeHandle &nh, ros::NodeHandle &private_nh);
 
-  /// False when the flight must end. Says why on /safety/alarm, again and again
-  /// while the reason lasts.
+  /// False when the flight must end. Repeats the reason on /safety/alarm as
+  /// long as it lasts.
   bool check(const SafetySample &sample, const ros::Time &now);
 
   unsigned lowBatteryWarnings() const { return low_battery_warnings_; }

@@ -10,13 +10,13 @@ class SearchPattern {
 public:
   explicit SearchPattern(ros::NodeHandle &private_nh);
 
-  /// Starts to turn at `yaw`, or goes on after a face was lost.
+  /// Starts to turn at `yaw`, or continues after a face was lost.
   void resume(double yaw, const ros::Time &now);
   /// Counts how far the UAV has turned; called with every new yaw.
   void advance(double yaw);
   /// It has turned past the face that was lost: faces count again.
   bool looking(const ros::Time &now) const;
-  /// It has turned round often enough without success.
+  /// It has turned often enough without success.
   bool exhausted() const;
   double yawRate() const { return search_yaw_rate_; }
 

@@ -1,5 +1,5 @@
 // Owns the simulated time: moves the UAV, publishes /clock, the sensors, the
-// camera's observations and the truth that an observer sees.
+// observations of the camera and the truth that an observer sees.
 #ifndef IMAGE_CAPTURE_SIMULATOR_NODE_H
 #define IMAGE_CAPTURE_SIMULATOR_NODE_H
 

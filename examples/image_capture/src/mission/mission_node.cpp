@@ -116,7 +116,7 @@ void MissionNode::enter(std::uint8_t state) {
   goal_yaw_ = flight_.yaw;
   publishState();
   publishAlbum();
-  // Faces cost power, and on the way they would only distract.
+  // Face detection costs power, and on the way faces would only distract.
   std_msgs::Bool detect;
   detect.data = state == MissionState::SEARCH || state == MissionState::TRACK;
   detector_pub_.publish(detect);

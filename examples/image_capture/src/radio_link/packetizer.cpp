@@ -31,7 +31,7 @@ void Packetizer::add(std::uint8_t stream, std::vector<std::uint8_t> part,
   packet.last = last;
   packet.data = std::move(part);
   queue_.push_back(packet);
-  // Old news are worth less than new ones.
+  // Old data is worth less than new data.
   if (static_cast<int>(queue_.size()) > max_queue_length_) {
     queue_.pop_front();
     ++dropped_;

@@ -6,7 +6,7 @@ namespace image_capture {
 
 namespace {
 
-/// A preview that is older, in s, shows what is no more.
+/// A preview older than this, in s, is out of date.
 double stale_preview_age = 1.0;
 
 /// The message as it would go over the air.

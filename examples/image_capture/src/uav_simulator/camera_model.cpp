@@ -8,7 +8,7 @@
 namespace image_capture {
 
 namespace {
-/// What stands upright in the field, as the camera sees its head.
+/// The upright objects in the field, as the camera sees their heads.
 constexpr Upright PersonsHead = {0.45, 0.55, 0.6, 0.85};
 /// A stone post has a face's features, but is too slim for one.
 constexpr Upright Post = {0.3, 0.66, 0.5, 0.8};
@@ -17,7 +17,7 @@ constexpr std::uint32_t ImageWidth = 640;
 constexpr std::uint32_t ImageHeight = 480;
 constexpr double ExposureTime = 0.02;
 constexpr double MissedImages = 0.03;
-/// The person stands before a wall, on which no leaves grow: half its angle.
+/// The person stands before a wall without leaves: half its angle.
 constexpr double WallHalfAngle = 0.65;
 } // namespace
 
@@ -75,7 +75,7 @@ void CameraModel::addUpright(const UavState &uav, const Person &place,
 }
 
 void CameraModel::schedulePhantom(double after) {
-  // A second passes at least: the leaves have to swing back.
+  // At least a second passes: the leaves have to swing back.
   phantom_.begin = after + 1.0 + leaves_.waitingTime(phantom_pause_);
   phantom_.end = phantom_.begin + leaves_.uniform(1.0, 1.8);
   phantom_placed_ = false;

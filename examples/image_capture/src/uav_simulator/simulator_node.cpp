@@ -58,7 +58,7 @@ void SimulatorNode::run(ros::NodeHandle &private_nh) {
 }
 
 void SimulatorNode::waitForPilot() {
-  // The time begins when all who decide are there.
+  // The time begins when all nodes that decide are there.
   while (ros::ok() && (sensors_pub_.getNumSubscribers() == 0 ||
                        observation_pub_.getNumSubscribers() == 0 ||
                        command_sub_.getNumPublishers() == 0 ||
@@ -67,7 +67,7 @@ void SimulatorNode::waitForPilot() {
     ros::WallDuration(0.02).sleep();
     ros::spinOnce();
   }
-  // And a moment later, in which they find one another.
+  // And a moment later, in which they connect to each other.
   ros::WallDuration(0.5).sleep();
 }
 
@@ -75,8 +75,8 @@ void SimulatorNode::tick() {
   clock_.advance();
   const ros::Time stamp = clock_.stamp();
   dynamics_.step(command_, clock_.Step);
-  // The mission acts ten times a second, by the clock; with a lag of less than
-  // that the time stands still until it has.
+  // The mission acts ten times a second by the clock. With a smaller lag than
+  // that, the time stands still until it has acted.
   mission_.sent(stamp);
   if (clock_.every(sensor_period_)) {
     controller_.sent(stamp);

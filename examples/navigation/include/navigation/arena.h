@@ -1,4 +1,4 @@
-// What stands in the arena, what rolls through it, and what a laser sees of it.
+// The obstacles in the arena, a cart that rolls through it, and what a laser sees.
 #ifndef NAVIGATION_ARENA_H
 #define NAVIGATION_ARENA_H
 
@@ -14,7 +14,7 @@ namespace navigation {
 
 constexpr double RobotRadius = 0.2; ///< m
 
-/// A cart that somebody rolls across the robot's way, without looking.
+/// A cart that somebody pushes across the robot's path without looking.
 class Cart {
 public:
   /// It begins when the robot comes through the doorway.
@@ -32,7 +32,7 @@ public:
   Arena(ros::NodeHandle &private_nh, std::uint32_t seed);
 
   void step(const Pose &robot, double interval);
-  /// Whether a robot there touches something.
+  /// Whether a robot at this pose touches something.
   bool touches(const Point &place) const;
   sensor_msgs::LaserScan scan(const ros::Time &stamp, const Pose &robot);
   const Cart &cart() const { return cart_; }

@@ -1,4 +1,4 @@
-// What a controller plugin is: the controller's host loads one by its name.
+// The interface of a controller plugin: the controller host loads one by its name.
 #ifndef NAVIGATION_CONTROLLER_H
 #define NAVIGATION_CONTROLLER_H
 
@@ -17,11 +17,11 @@ public:
   virtual ~Controller() = default;
   /// Called once: `private_nh` has its parameters.
   virtual void initialize(ros::NodeHandle &nh, ros::NodeHandle &private_nh) = 0;
-  /// A path to a new goal, or another one to the same; the last pose is the
+  /// A path to a new goal, or a new path to the same goal; the last pose is the
   /// goal.
   virtual void setPath(const std::vector<Pose> &path,
                        std::uint32_t goal_id) = 0;
-  /// What to drive at `robot`'s time.
+  /// The velocity to drive at the time of `robot`.
   virtual geometry_msgs::Twist compute(const Localised &robot) = 0;
 };
 

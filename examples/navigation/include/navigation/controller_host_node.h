@@ -1,4 +1,4 @@
-// Loads a controller by its name and has it drive.
+// Loads a controller by its name and lets it drive.
 #ifndef NAVIGATION_CONTROLLER_HOST_NODE_H
 #define NAVIGATION_CONTROLLER_HOST_NODE_H
 

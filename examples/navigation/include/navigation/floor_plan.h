@@ -43,8 +43,8 @@ inline const std::vector<Box> &walls() {
   return Walls;
 }
 
-/// The point of a box's outline that is nearest to one outside of it, or
-/// inside.
+/// The point on a box's outline that is nearest to a point inside or outside of
+/// it.
 inline Point nearestOnBox(const Box &box, const Point &point) {
   const double x = std::clamp(point.x, box.min_x, box.max_x);
   const double y = std::clamp(point.y, box.min_y, box.max_y);
@@ -60,15 +60,15 @@ inline Point nearestOnBox(const Box &box, const Point &point) {
   return {x, least == below ? box.min_y : box.max_y};
 }
 
-/// The way to a box's outline, m; 0 inside.
+/// The distance to a box's outline, m; 0 inside.
 inline double distanceTo(const Box &box, const Point &point) {
   const double dx = std::max({box.min_x - point.x, point.x - box.max_x, 0.0});
   const double dy = std::max({box.min_y - point.y, point.y - box.max_y, 0.0});
   return std::hypot(dx, dy);
 }
 
-/// How far a ray goes until it meets a box (the slab method of Kay and Kajiya);
-/// infinite where it does not.
+/// The distance at which a ray hits a box (the slab method of Kay and Kajiya);
+/// infinite if it does not.
 inline double rayToBox(const Box &box, const Point &from, double angle) {
   const double dx = std::cos(angle), dy = std::sin(angle);
   double enter = 0.0, leave = std::numeric_limits<double>::infinity();

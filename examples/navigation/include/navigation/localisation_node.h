@@ -1,4 +1,4 @@
-// Where the robot is: odometry between the scans, the map's walls at each.
+// The robot's pose: odometry between the scans, the walls of the map at each scan.
 #ifndef NAVIGATION_LOCALISATION_NODE_H
 #define NAVIGATION_LOCALISATION_NODE_H
 
@@ -11,7 +11,7 @@
 
 namespace navigation {
 
-/// Whether the matches of late can be relied on.
+/// Whether the recent matches can be relied on.
 class Confidence {
 public:
   explicit Confidence(ros::NodeHandle &private_nh);

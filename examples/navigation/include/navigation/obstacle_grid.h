@@ -1,5 +1,5 @@
-// What the planner knows of the floor: the map's walls, and what the laser
-// meets beside them.
+// What the planner knows about the floor: the walls of the map, and the other
+// obstacles that the laser hits.
 #ifndef NAVIGATION_OBSTACLE_GRID_H
 #define NAVIGATION_OBSTACLE_GRID_H
 
@@ -25,19 +25,19 @@ public:
 
   explicit ObstacleGrid(ros::NodeHandle &private_nh);
 
-  /// Counts what a scan from `robot` meets, and forgets what it looks through.
+  /// Counts the cells that a scan from `robot` hits, and clears those that it passes.
   void update(const Pose &robot, const sensor_msgs::LaserScan &scan);
-  /// Computes the clearance of all cells anew.
+  /// Recomputes the clearance of all cells.
   void measureClearance();
 
   static bool inside(const Cell &cell);
   static Cell cellAt(const Point &point);
   static Point centre(const Cell &cell);
-  /// Whether the robot's middle must not be there.
+  /// Whether the robot's centre must not be there.
   bool lethal(const Cell &cell) const;
   /// To the nearest occupied cell, m.
   double clearance(const Cell &cell) const;
-  /// How much dearer a step into a cell is than on free floor, 0 or more.
+  /// How much more a step into a cell costs than on free floor, 0 or more.
   double discomfort(const Cell &cell) const;
   nav_msgs::OccupancyGrid message(const ros::Time &stamp) const;
 

@@ -1,4 +1,4 @@
-// Plans the robot's path, and plans it anew where that is needed.
+// Plans the robot's path, and plans it again when needed.
 #ifndef NAVIGATION_PLANNER_NODE_H
 #define NAVIGATION_PLANNER_NODE_H
 

@@ -1,4 +1,4 @@
-// Follows a point that runs ahead on the path.
+// Follows a point that moves ahead along the path.
 #ifndef NAVIGATION_PURE_PURSUIT_H
 #define NAVIGATION_PURE_PURSUIT_H
 
@@ -14,7 +14,7 @@ public:
   geometry_msgs::Twist compute(const Localised &robot) override;
 
 protected:
-  /// How far the robot looks away from where it has to at the goal, rad.
+  /// The angle between the robot's heading and that of the goal, rad.
   virtual double misalignment() const;
 
   double heading_error_ = 0.0;

@@ -1,5 +1,5 @@
-// Helps the robot out where it is stuck, touches something or is lost; else it
-// hands on what the controller wants.
+// Helps the robot if it is stuck, touches something or is lost; otherwise
+// passes on the command of the controller.
 #ifndef NAVIGATION_RECOVERY_NODE_H
 #define NAVIGATION_RECOVERY_NODE_H
 
@@ -14,7 +14,7 @@
 
 namespace navigation {
 
-/// Knows since when the robot has not got on although it is told to.
+/// Knows since when the robot has not moved although it was told to.
 class StuckWatch {
 public:
   explicit StuckWatch(ros::NodeHandle &private_nh);

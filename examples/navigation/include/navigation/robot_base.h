@@ -16,12 +16,12 @@ class RobotBase {
 public:
   RobotBase(ros::NodeHandle &private_nh, std::uint32_t seed);
 
-  /// It stands where it would go into something.
+  /// It stops before it would move into something.
   void step(const geometry_msgs::Twist &command, const Arena &arena,
             double interval);
   nav_msgs::Odometry odometry(const ros::Time &stamp);
-  /// What the base says of itself; where the battery is empty, the wheels stand
-  /// until it says otherwise.
+  /// What the base reports about itself. With an empty battery the wheels stand
+  /// still until it reports otherwise.
   RobotStatus status(const ros::Time &stamp);
   const Pose &pose() const { return pose_; }
   bool contact() const { return contact_; }

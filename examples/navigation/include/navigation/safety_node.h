@@ -1,4 +1,4 @@
-// Has the last word on what the wheels are told.
+// Has the last word on the command to the wheels.
 #ifndef NAVIGATION_SAFETY_NODE_H
 #define NAVIGATION_SAFETY_NODE_H
 
@@ -21,7 +21,7 @@ private:
   void onCommand(const geometry_msgs::TwistStamped &command);
   void onHousekeeping(const ros::TimerEvent &event);
   void takeIn();
-  /// Why the wheels must stand, or an empty text.
+  /// Why the wheels must stand still, or an empty string.
   std::string reasonToStand(const ros::Time &now);
   void guardFront(geometry_msgs::Twist &twist);
   void guardRear(geometry_msgs::Twist &twist) const;

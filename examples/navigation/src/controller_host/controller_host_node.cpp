@@ -40,7 +40,7 @@ ControllerHostNode::ControllerHostNode(ros::NodeHandle &nh,
 void ControllerHostNode::onMission(const MissionCommand &command) {
   const bool new_goal = command.goal_id != command_.goal_id;
   command_ = command;
-  // Its path comes by another connection, and may have come before.
+  // Its path comes by another connection, and may have arrived earlier.
   if (new_goal)
     controller_->setPath(poses_, command_.goal_id);
 }

@@ -1,5 +1,5 @@
 // The same controller with a fault in its source: degrees are compared with
-// radians, so that it is hardly ever content with its heading.
+// radians, so that it is almost never satisfied with its heading.
 #include <cmath>
 
 #include <pluginlib/class_list_macros.hpp>

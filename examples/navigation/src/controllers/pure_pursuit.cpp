@@ -47,7 +47,7 @@ void PurePursuit::setPath(const std::vector<Pose> &path,
 }
 
 Point PurePursuit::target(const Point &robot) const {
-  // From the nearest point on, the first one that is far enough ahead.
+  // The first point after the nearest one that is far enough ahead.
   std::size_t nearest = 0;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < path_.size(); ++i) {
@@ -76,7 +76,7 @@ geometry_msgs::Twist PurePursuit::compute(const Localised &robot) {
   const Pose &goal = path_.back();
   distance_ = std::hypot(goal.x - robot.x, goal.y - robot.y);
   heading_error_ = wrapAngle(goal.yaw - robot.yaw);
-  // Once there it does not drive on for what the turn moves it.
+  // Once there, it does not correct what the turn moves it.
   if (distance_ < goal_tolerance_)
     near_goal_ = true;
   if (!near_goal_) {
@@ -120,7 +120,7 @@ geometry_msgs::Twist PurePursuit::align() {
     aligned_ = 0;
     return turnTo(heading_error_);
   }
-  // In passing is not enough: it has to stay so.
+  // Passing by is not enough: it has to stay so.
   if (++aligned_ >= aligned_frames_)
     arrived_ = true;
   return {};
@@ -129,7 +129,7 @@ geometry_msgs::Twist PurePursuit::align() {
 geometry_msgs::Twist PurePursuit::turnTo(double heading_error) {
   geometry_msgs::Twist twist;
   double turn_rate = limitedTurn(TurnGain * heading_error);
-  // Slower the wheels would not turn at all.
+  // Below this speed the wheels would not turn at all.
   if (std::fabs(turn_rate) < min_turn_rate_)
     turn_rate = std::copysign(min_turn_rate_, turn_rate);
   twist.angular.z = turn_rate;

@@ -14,7 +14,7 @@ constexpr double LaserRange = 6.0;  // m
 constexpr int Beams = 120;
 constexpr double DustTime = 0.35; // s
 
-// They stand on no map.
+// They are not on the map.
 const std::vector<Box> &boxes() {
   static const std::vector<Box> Boxes = {
       {2.3, 1.7, 2.7, 2.1}, {5.7, 3.0, 6.2, 3.5}, {6.8, 1.6, 7.2, 2.0}};

@@ -28,7 +28,7 @@ void RobotBase::step(const geometry_msgs::Twist &command, const Arena &arena,
                      double interval) {
   double speed = empty_ ? 0.0 : command.linear.x;
   double turn = empty_ ? 0.0 : command.angular.z;
-  // The faster wheel is as fast as it can be, the other in proportion.
+  // The faster wheel runs at its maximum, the other in proportion.
   const double wheel = std::fabs(speed) + HalfTrack * std::fabs(turn);
   if (wheel > max_wheel_speed_) {
     speed *= max_wheel_speed_ / wheel;
@@ -48,7 +48,7 @@ void RobotBase::step(const geometry_msgs::Twist &command, const Arena &arena,
   next.y += grip * speed_ * std::sin(next.yaw) * interval;
   const bool blocked = arena.touches({next.x, next.y});
   if (blocked) {
-    // It can turn, and leave backwards: only what leads on into it is stopped.
+    // It can turn and back off: only motion further into the obstacle is stopped.
     next.x = pose_.x;
     next.y = pose_.y;
   }

@@ -13,7 +13,7 @@ namespace {
 constexpr double TruthPeriod = 0.1;
 constexpr double StatusPeriod = 0.1;
 constexpr double HandshakePeriod = 0.1; // s, of the wall's clock
-// The mark on the floor, and how near to it the lamp may be lit.
+// The mark on the floor, and how close to it the lamp may be lit.
 constexpr Pose Goal = {6.6, 4.8, M_PI / 2.0};
 constexpr double SignalRadius = 0.4; // m
 } // namespace
@@ -65,8 +65,8 @@ void SimulatorNode::run(ros::NodeHandle &private_nh) {
 }
 
 void SimulatorNode::waitForNodes() {
-  // The first moment lasts until all who decide have answered to it: they come
-  // up one after the other, and the mission must not begin before the last.
+  // The first moment lasts until all nodes that decide have answered to it: they
+  // start one after the other, and the mission must not begin before the last.
   clock_.advance();
   const ros::Time stamp = clock_.stamp();
   const RobotStatus status = base_.status(stamp);
@@ -100,7 +100,7 @@ void SimulatorNode::sense(const ros::Time &stamp) {
     odometry_pub_.publish(base_.odometry(stamp));
   if (!clock_.every(scan_period_))
     return;
-  // They all hand on the stamp of the scan that they go back to.
+  // They all pass on the stamp of the scan that they are based on.
   drive_.sent(stamp);
   planner_.sent(stamp);
   mission_.sent(stamp);

@@ -58,7 +58,7 @@ void LocalisationNode::onScan(const sensor_msgs::LaserScan &scan) {
 }
 
 void LocalisationNode::takeIn() {
-  // The odometry of the scan's time comes by another connection.
+  // The odometry for the time of the scan comes by another connection.
   if (!scan_pending_ || odometry_.header.stamp < scan_.header.stamp)
     return;
   scan_pending_ = false;
@@ -66,7 +66,7 @@ void LocalisationNode::takeIn() {
   Match match;
   match.pose = pose_;
   const double turn_rate = std::fabs(odometry_.twist.twist.angular.z);
-  // In a fast turn the scan is bent.
+  // In a fast turn the scan is distorted.
   if (enable_matching_ && turn_rate < max_match_turn_rate_)
     match = matcher_.match(pose_, scan_);
   pose_ = match.pose;
@@ -77,7 +77,7 @@ void LocalisationNode::takeIn() {
 void LocalisationNode::predict() {
   const Pose now = countedPose(odometry_);
   const double dx = now.x - counted_.x, dy = now.y - counted_.y;
-  // A longer step was not driven: the counter was set anew.
+  // Nobody drove a longer step: the counter was reset.
   const bool driven = begun_ && std::hypot(dx, dy) < max_odometry_step_;
   if (driven) {
     const double c = std::cos(pose_.yaw - counted_.yaw);

@@ -109,7 +109,7 @@ ScanMatcher::Step ScanMatcher::fit(const Pose &pose,
     const double ry = s * point.x + c * point.y;
     const Point in_map{pose.x + rx, pose.y + ry};
     const Nearest wall = nearestOnWalls(in_map);
-    // Cauchy's weight: what is far from each wall is a box, and says little.
+    // Cauchy's weight: a point far from every wall is on a box, and says little.
     const double share = wall.distance / residual_scale_;
     const double weight = 1.0 / (1.0 + share * share);
     step.weight += weight;

@@ -14,7 +14,7 @@ constexpr int Cells = ObstacleGrid::Columns * ObstacleGrid::Rows;
 struct Open {
   double estimate;
   int cell;
-  // The least on top of the queue; equal ones in a fixed order.
+  // The smallest on top of the queue; equal ones in a fixed order.
   bool operator<(const Open &other) const {
     if (estimate != other.estimate)
       return estimate > other.estimate;
@@ -34,7 +34,7 @@ double between(const Cell &a, const Cell &b) {
   return std::hypot(a.column - b.column, a.row - b.row);
 }
 
-/// The least way with steps to eight neighbours.
+/// The shortest path with steps to eight neighbours.
 double stepsBetween(const Cell &a, const Cell &b) {
   const int columns = std::abs(a.column - b.column);
   const int rows = std::abs(a.row - b.row);
@@ -101,7 +101,7 @@ Plan PathSearch::search(const ObstacleGrid &grid, const Point &from,
       continue;
     closed[at(current)] = true;
     const Cell cell = cellOf(current);
-    // Looked at late: most cells that are opened are never come to.
+    // Evaluated late: most cells that are opened are never visited.
     if (grid.lethal(cell))
       continue;
     if (++plan.expansions > max_expansions_)

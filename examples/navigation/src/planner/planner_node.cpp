@@ -48,7 +48,7 @@ void PlannerNode::takeIn() {
     return;
   pose_pending_ = false;
   const ros::Time now = pose_.header.stamp;
-  // A pose that is not sure would draw obstacles where there are none.
+  // An uncertain pose would put obstacles where there are none.
   if (pose_.quality > min_map_quality_)
     grid_.update({pose_.x, pose_.y, pose_.yaw}, scan_);
   if (command_.mode == MissionCommand::DRIVE && outdated(now))
@@ -110,7 +110,7 @@ void PlannerNode::plan(const ros::Time &now) {
     pose.pose.orientation.w = 1.0;
     path.poses.push_back(pose);
   }
-  // The grid's cell is near the goal, not at it.
+  // The grid's cell is near the goal, not exactly at it.
   if (!path.poses.empty()) {
     geometry_msgs::Pose &last = path.poses.back().pose;
     last.position.x = command_.goal_x;

@@ -63,7 +63,7 @@ void RecoveryNode::onCommand(const geometry_msgs::TwistStamped &command) {
 }
 
 void RecoveryNode::takeIn() {
-  // The pose that the command goes back to comes by another connection.
+  // The pose that the command is based on comes by another connection.
   if (!command_pending_ || pose_stamp_ < command_.header.stamp)
     return;
   command_pending_ = false;

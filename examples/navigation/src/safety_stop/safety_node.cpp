@@ -17,7 +17,7 @@ constexpr double SideTo = 100.0 * Degree;
 constexpr double RearFrom = 148.0 * Degree;
 constexpr double VoltageShare = 0.1; // of a new reading in the smoothed one
 
-/// The second least range between two angles to either side, m: a single one
+/// The second smallest range between two angles on either side, m: a single one
 /// may be dust.
 double clearance(const sensor_msgs::LaserScan &scan, double from, double to) {
   double least = std::numeric_limits<double>::infinity(), second = least;
@@ -93,7 +93,7 @@ void SafetyNode::onCommand(const geometry_msgs::TwistStamped &command) {
 }
 
 void SafetyNode::takeIn() {
-  // The scan that the command goes back to comes by another connection.
+  // The scan that the command is based on comes by another connection.
   if (!command_pending_ || scan_.header.stamp < command_.header.stamp)
     return;
   command_pending_ = false;

@@ -1,5 +1,5 @@
-// How a multirotor flies: attitude and motors follow late, thrust lifts, tilt
-// speeds up, air brakes.
+// How a multirotor flies: attitude and motors respond with a delay, thrust
+// lifts, tilt accelerates, air brakes.
 #ifndef SIMULATED_WORLD_MULTIROTOR_H
 #define SIMULATED_WORLD_MULTIROTOR_H
 
@@ -15,12 +15,12 @@ struct MultirotorState {
   double thrust = 0.0;
 };
 
-/// What it is asked for: rad, rad/s, a share of the full thrust.
+/// The command: rad, rad/s, a share of the full thrust.
 struct MultirotorInput {
   double roll = 0.0, pitch = 0.0, yaw_rate = 0.0, thrust = 0.0;
 };
 
-/// What the wind speeds it up by, m/s^2.
+/// The acceleration by the wind, m/s^2.
 struct Wind {
   double x = 0.0, y = 0.0;
 };
@@ -55,7 +55,7 @@ private:
   void moveSideways(const Wind &wind, double interval) {
     const double c = std::cos(state_.yaw);
     const double s = std::sin(state_.yaw);
-    // A positive pitch speeds up forwards, a positive roll to the left.
+    // A positive pitch accelerates forwards, a positive roll to the left.
     const double forward = Gravity * std::tan(state_.pitch);
     const double left = Gravity * std::tan(state_.roll);
     const double ax = c * forward - s * left - Drag * state_.vx + wind.x;

@@ -1,5 +1,5 @@
-// The time of a simulated world: who owns it tells it on /clock, keeps its pace
-// beside the wall's, and lets it wait for nodes that are late.
+// The time of a simulated world: its owner publishes it on /clock, keeps its
+// pace relative to the wall clock, and lets it wait for nodes that are late.
 #ifndef SIMULATED_WORLD_SIMULATED_CLOCK_H
 #define SIMULATED_WORLD_SIMULATED_CLOCK_H
 
@@ -18,7 +18,7 @@ public:
   explicit SimulatedClock(ros::NodeHandle &nh)
       : clock_pub_(nh.advertise<rosgraph_msgs::Clock>("/clock", 50)) {}
 
-  /// One step further, and tells everybody.
+  /// Advances by one step, and publishes the time.
   void advance() {
     ++ticks_;
     rosgraph_msgs::Clock clock;
@@ -26,8 +26,8 @@ public:
     clock_pub_.publish(clock);
   }
 
-  /// Sleeps until the wall's clock has come as far: `rate` simulated seconds in
-  /// one of its own.
+  /// Sleeps until the wall clock has caught up: `rate` simulated seconds take
+  /// one real second.
   void keepPace(double rate) {
     const ros::WallTime now = ros::WallTime::now();
     if (next_.isZero())
@@ -46,7 +46,7 @@ public:
                      static_cast<std::uint32_t>(milliseconds % 1000) *
                          1000000u);
   }
-  /// Whether something that is done each `seconds` is due.
+  /// Whether something that is done every `seconds` is due.
   bool every(double seconds) const {
     return ticks_ % std::llround(seconds / Step) == 0;
   }
@@ -59,21 +59,21 @@ private:
   ros::WallTime next_;
 };
 
-/// Lets the simulated time wait for a node that answers what it is sent: what
-/// happens in a mission must not depend on the machine's load.
+/// Makes the simulated time wait for a node that answers messages: what happens
+/// in a mission must not depend on the load of the machine.
 class Lockstep {
 public:
-  /// Stamps of what was sent, and of that to which there was an answer.
+  /// Stamps of the last message sent, and of the last one answered.
   void sent(const ros::Time &stamp) {
     sent_ = stamp;
     due_ = true;
   }
   void answered(const ros::Time &stamp) { answered_ = stamp; }
-  /// Whether it has answered at all.
+  /// Whether it has ever answered.
   bool begun() const { return !answered_.isZero(); }
 
-  /// Spins until the answers to what was sent last are at most `max_lag` (s,
-  /// simulated) behind. A node that never answered has not begun, and is not
+  /// Spins until the answers are at most `max_lag` (s, simulated) behind the
+  /// last message. A node that never answered has not started yet, and is not
   /// waited for.
   void hold(double max_lag) {
     if (!due_ || !begun())
@@ -90,7 +90,7 @@ public:
 
 private:
   static constexpr double Look = 0.001; // s, of the wall's clock
-  /// A node that is gone must not stop the time for good.
+  /// A node that is gone must not stop the time for ever.
   static constexpr double LongestHold = 0.5;
 
   ros::Time sent_;

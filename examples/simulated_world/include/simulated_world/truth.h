@@ -1,4 +1,4 @@
-// What an observer sees: where things really are.
+// What an observer sees: the true poses.
 #ifndef SIMULATED_WORLD_TRUTH_H
 #define SIMULATED_WORLD_TRUTH_H
 

@@ -7,7 +7,7 @@ namespace water_sampler {
 /// First-order low pass; the first sample is taken as it is.
 class LowPass {
 public:
-  /// `share` is how much of a new sample is taken, 0 to 1.
+  /// `share` is the weight of a new sample, 0 to 1.
   explicit LowPass(double share = 0.5) : share_(share) {}
 
   double update(double sample) {

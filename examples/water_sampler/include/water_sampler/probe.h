@@ -1,4 +1,4 @@
-// Tells water from air at the tube's tip.
+// Distinguishes water from air at the tip of the tube.
 #ifndef WATER_SAMPLER_PROBE_H
 #define WATER_SAMPLER_PROBE_H
 
@@ -12,7 +12,7 @@ public:
 
   /// Takes a reading in microsiemens per cm.
   void update(double conductivity);
-  /// How many readings in a row were of water.
+  /// How many readings in a row were in water.
   unsigned wetReadings() const { return wet_readings_; }
   double conductivity() const { return conductivity_; }
   unsigned shorts() const { return shorts_; }

@@ -1,4 +1,4 @@
-// One run of the pump: what flows, and when it has to end.
+// One run of the pump: how much flows, and when it has to end.
 #ifndef WATER_SAMPLER_PUMP_H
 #define WATER_SAMPLER_PUMP_H
 
@@ -16,7 +16,7 @@ public:
 
   void start(const ros::Time &now);
   void stop(const ros::Time &now);
-  /// Ends the run when the vial is full or something is wrong.
+  /// Ends the run if the vial is full or something is wrong.
   void update(const SamplerSensors &sensors);
 
   /// Whether it has rested long enough to be started.

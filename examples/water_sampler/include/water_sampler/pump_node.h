@@ -1,4 +1,4 @@
-// The pump control: the probe's and the flow meter's readings in, the motor
+// The pump control: readings of the probe and the flow meter in, motor command
 // out.
 #ifndef WATER_SAMPLER_PUMP_NODE_H
 #define WATER_SAMPLER_PUMP_NODE_H

@@ -17,8 +17,8 @@ public:
   /// Reads its limits below `private_nh` and advertises /safety/alarm.
   SafetyMonitor(ros::NodeHandle &nh, ros::NodeHandle &private_nh);
 
-  /// False when the flight must end. Says why on /safety/alarm, again and again
-  /// while the reason lasts.
+  /// False when the flight must end. Repeats the reason on /safety/alarm as
+  /// long as it lasts.
   bool check(const Estimate &estimate, double voltage, const ros::Time &now);
 
 private:

@@ -19,7 +19,7 @@ public:
   UavDynamics(ros::NodeHandle &private_nh, std::uint32_t seed);
 
   void step(const AttitudeCommand &command, double interval);
-  /// `surface` is the height of what is below the UAV, m.
+  /// `surface` is the height of the surface below the UAV, m.
   UavSensors sense(const ros::Time &stamp, double surface);
   const UavState &state() const { return multirotor_.state(); }
 

@@ -21,7 +21,7 @@ public:
   void step(const UavState &uav, const PumpDrive &drive, double interval);
   SamplerSensors sense(const ros::Time &stamp);
   SamplerTruth truth(const ros::Time &stamp) const;
-  /// The height of what the sonar meets below a place, m.
+  /// The height of the surface that the sonar hits below a place, m.
   double surfaceBelow(double x, double y) const;
   bool vialFilled() const;
 

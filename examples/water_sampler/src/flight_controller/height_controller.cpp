@@ -21,7 +21,7 @@ HeightController::HeightController(ros::NodeHandle &private_nh) {
 double HeightController::update(const Estimate &estimate,
                                 const Target &target) {
   const double error = climbRate(target.z - estimate.z) - estimate.vz;
-  // On the ground the error says nothing of the thrust.
+  // On the ground the error says nothing about the thrust.
   if (!estimate.near_ground)
     integrate(error, estimate.interval);
   double thrust = hover_thrust_ + ClimbGain * error + trim_;

@@ -32,7 +32,7 @@ void StateEstimator::updateLateral(const UavSensors &sensors) {
   }
   estimate_.vx = slope_x_.update(estimate_.x, estimate_.interval);
   estimate_.vy = slope_y_.update(estimate_.y, estimate_.interval);
-  // An old fix says nothing of the speed: do not push against it.
+  // An old fix says nothing about the speed: do not control by it.
   if ((sensors.header.stamp - last_fix_).toSec() > gps_timeout_)
     estimate_.vx = estimate_.vy = 0.0;
 }

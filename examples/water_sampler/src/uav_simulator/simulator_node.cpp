@@ -48,8 +48,8 @@ void SimulatorNode::run(ros::NodeHandle &private_nh) {
 }
 
 void SimulatorNode::waitForPilot() {
-  // The time begins when the UAV and the pump have someone who reads them, and
-  // the mission has begun.
+  // The time begins when other nodes read the UAV and the pump, and the mission
+  // has begun.
   while (ros::ok() && (sensors_pub_.getNumSubscribers() < 2 ||
                        sampler_pub_.getNumSubscribers() == 0 ||
                        waypose_sub_.getNumPublishers() == 0)) {
@@ -66,7 +66,7 @@ void SimulatorNode::tick() {
   if (clock_.every(WaterPeriod))
     water_.step(uav, drive_, WaterPeriod);
   if (clock_.every(sensor_period_)) {
-    // The mission answers the controller, which hands on the stamp.
+    // The mission answers the controller, which passes on the stamp.
     controller_.sent(stamp);
     mission_.sent(stamp);
     sensors_pub_.publish(

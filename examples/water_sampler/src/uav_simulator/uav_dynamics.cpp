@@ -24,7 +24,7 @@ void UavDynamics::step(const AttitudeCommand &command, double interval) {
   gust_x_.step(noise_, interval);
   gust_y_.step(noise_, interval);
   baro_drift_.step(noise_, interval);
-  // It keeps its heading itself.
+  // The UAV keeps its heading by itself.
   multirotor_.step(
       {command.roll, command.pitch, 0.0, powered ? command.thrust : 0.0},
       wind(), interval);

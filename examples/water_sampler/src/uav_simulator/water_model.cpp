@@ -6,7 +6,7 @@
 namespace water_sampler {
 
 namespace {
-// The world, m: facts, and no configuration.
+// The world, m: constants, not configuration.
 constexpr double TankX = 3.0;
 constexpr double TankY = 2.0;
 constexpr double TankRadius = 0.45;
@@ -41,7 +41,7 @@ void WaterModel::step(const UavState &uav, const PumpDrive &drive,
 }
 
 void WaterModel::sway(const UavState &uav, double interval) {
-  // The tip follows the UAV late; on the ground the tube lies coiled.
+  // The tip follows the UAV with a delay; on the ground the tube lies coiled.
   const double share = 1.0 - std::exp(-interval / SwayTime);
   tip_x_ += share * (uav.x - tip_x_);
   tip_y_ += share * (uav.y - tip_y_);
@@ -53,8 +53,8 @@ bool WaterModel::aboveTank() const {
 }
 
 void WaterModel::spray(double interval) {
-  // The rotors' wind throws drops at the tip when the UAV is low over water;
-  // lower still, it presses the water flat.
+  // The wind of the rotors throws drops at the tip when the UAV is low over
+  // water; lower still, it flattens the water.
   const double above = tip_z_ - WaterLevel;
   if (!aboveTank() || above < SprayLowest || above > SprayHighest) {
     spray_left_ = 0.0;
@@ -78,7 +78,7 @@ void WaterModel::pump(const PumpDrive &drive, double interval) {
       pump_running_ && in_water_ ? PumpRate * drive.duty : 0.0;
   flow_ += (wanted - flow_) * (1.0 - std::exp(-interval / PumpLag));
   vial_ += flow_ * interval;
-  // What a full vial does not hold runs back into the tank.
+  // What does not fit into the vial runs back into the tank.
   if (vial_ > VialCapacity)
     vial_ = VialCapacity;
   // Water is heavier to move than air.

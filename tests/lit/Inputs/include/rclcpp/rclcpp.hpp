@@ -1,6 +1,6 @@
 // The part of rclcpp's interface that the tests use, written from its public
-// documentation, so that the functions have its mangled names. Nothing of it
-// runs.
+// documentation so that the functions have the same mangled names. It is never
+// run.
 #ifndef TPC_TEST_RCLCPP_H
 #define TPC_TEST_RCLCPP_H
 

@@ -1,4 +1,4 @@
-// The part of rclcpp_lifecycle's interface that the tests use; as rclcpp.hpp.
+// The part of rclcpp_lifecycle's interface that the tests use; see rclcpp.hpp.
 #ifndef TPC_TEST_LIFECYCLE_NODE_H
 #define TPC_TEST_LIFECYCLE_NODE_H
 

@@ -1,7 +1,7 @@
 // The part of roscpp's interface that the tests use, with its mangled names
-// (names-as-roscpp.cpp holds it against the real one), and small enough that a
-// test compiles at once. Inputs/ros.cpp makes programs of it that run without
-// a master: parameters come from the environment, messages go to the output.
+// (names-as-roscpp.cpp compares it with the real one) and small enough to
+// compile fast. With Inputs/ros.cpp the programs run without a master:
+// parameters come from the environment, messages go to the output.
 #ifndef TPC_TEST_ROS_H
 #define TPC_TEST_ROS_H
 

@@ -1,5 +1,5 @@
-//===- Room.cpp -----------------------------------------------------------===//
-#include "Room.h"
+//===- MappedFile.cpp -----------------------------------------------------===//
+#include "MappedFile.h"
 
 #include "Clock.h"
 #include "Runtime.h"
@@ -21,9 +21,9 @@ namespace tpc {
 
 using namespace layout;
 
-static constexpr uint32_t MostAhead = 64; ///< extents
+static constexpr uint32_t MostAhead = 64; ///< in extents
 
-Room::Room(const Config &C, const NewFile &File)
+MappedFile::MappedFile(const Config &C, const NewFile &File)
     : Path(File.Path), Descriptor(File.Descriptor),
       LimitBytes(C.FileLimitMiB << 20), ReserveBytes(C.FileReserveMiB << 20) {
   struct stat Its;
@@ -33,16 +33,16 @@ Room::Room(const Config &C, const NewFile &File)
   }
 }
 
-/// A program that closes all descriptors, as daemons do, may have opened a file
-/// of its own in the place of this one.
-bool Room::isMine() const {
+/// False if the program has closed the descriptor, as daemons do with all of
+/// them, and perhaps opened a file of its own under the same number.
+bool MappedFile::isMine() const {
   struct stat Its;
   return !fstat(Descriptor, &Its) && Its.st_dev == Device &&
          Its.st_ino == Inode;
 }
 
-/// Allocates on the disk, so that writing to the mapping cannot fail; 0 or the
-/// error.
+/// Allocates space on the disk, so that writing to the mapping cannot fail;
+/// returns 0 or the error.
 static int allocate(int Descriptor, off_t Begin, off_t Length) {
   int Error;
   do
@@ -51,8 +51,8 @@ static int allocate(int Descriptor, off_t Begin, off_t Length) {
   return Error;
 }
 
-/// Whether the file may become \p End bytes long.
-bool Room::isAllowed(uint64_t End, std::string &Why) const {
+/// Whether the file may grow to \p End bytes.
+bool MappedFile::isAllowed(uint64_t End, std::string &Why) const {
   // Beyond this limit the process would get a signal.
   rlimit Limit;
   if (!getrlimit(RLIMIT_FSIZE, &Limit) && End > Limit.rlim_cur) {
@@ -75,16 +75,16 @@ bool Room::isAllowed(uint64_t End, std::string &Why) const {
   return true;
 }
 
-char *Room::map(uint64_t At, size_t Size, std::string &Why) const {
+char *MappedFile::map(uint64_t At, size_t Size, std::string &Why) const {
   void *P = mmap(nullptr, Size, PROT_READ | PROT_WRITE, MAP_SHARED, Descriptor,
                  static_cast<off_t>(At));
   if (P != MAP_FAILED)
     return static_cast<char *>(P);
-  Why = "mapping it: " + errorText(errno);
+  Why = "cannot map it: " + errorText(errno);
   return nullptr;
 }
 
-bool Room::grow(std::string &Why) {
+bool MappedFile::grow(std::string &Why) {
   uint64_t Count;
   {
     std::lock_guard<std::mutex> Guard(Chunks);
@@ -126,8 +126,8 @@ bool Room::grow(std::string &Why) {
   return true;
 }
 
-char *Room::newChunk(uint32_t Kind, uint32_t Thread, uint64_t First,
-                     uint64_t Tid) {
+char *MappedFile::newChunk(uint32_t Kind, uint32_t Thread, uint64_t First,
+                           uint64_t Tid) {
   for (;;) {
     {
       std::lock_guard<std::mutex> Guard(Chunks);
@@ -166,15 +166,14 @@ char *Room::newChunk(uint32_t Kind, uint32_t Thread, uint64_t First,
   }
 }
 
-void Room::stop(const std::string &Why) {
+void MappedFile::stop(const std::string &Why) {
   if (Stopped.exchange(true))
     return;
   Header->State = layout::Stopped;
-  warn(Path + ": " + Why +
-       "; nothing more is recorded, the program goes on as if it were");
+  warn(Path + ": " + Why + "; recording stops, and the program continues");
 }
 
-void Room::touch() {
+void MappedFile::touch() {
   for (size_t I = 0;; ++I) {
     char *Base;
     {
@@ -185,7 +184,7 @@ void Room::touch() {
         return;
       Base = Extents[I].Base;
     }
-    // Reports may be written to it meanwhile: nothing is changed here.
+    // Reports may be written to it meanwhile, so nothing is changed here.
     if (madvise(Base, ExtentBytes, MADV_POPULATE_WRITE))
       for (uint32_t At = 0; At < ExtentBytes; At += 4096)
         __atomic_fetch_or(Base + At, 0, __ATOMIC_RELAXED);
@@ -194,7 +193,7 @@ void Room::touch() {
   }
 }
 
-void Room::lookAhead() {
+void MappedFile::lookAhead() {
   std::vector<char *> Full;
   for (;;) {
     {
@@ -214,7 +213,7 @@ void Room::lookAhead() {
     }
     std::lock_guard<std::mutex> Guard(Growing);
     std::string Why;
-    // A full disk is said when the room is needed.
+    // A full disk is reported when the space is needed.
     if (!grow(Why))
       break;
     touch();
@@ -223,7 +222,7 @@ void Room::lookAhead() {
     munmap(Base, ExtentBytes);
 }
 
-void Room::finish(const void *EndOfChunk) {
+void MappedFile::finish(const void *EndOfChunk) {
   const char *Chunk = static_cast<const char *>(EndOfChunk) - ChunkBytes;
   std::lock_guard<std::mutex> Guard(Chunks);
   for (size_t I = Extents.size(); I-- > 0;) {
@@ -235,17 +234,18 @@ void Room::finish(const void *EndOfChunk) {
   }
 }
 
-void Room::close() {
+void MappedFile::close() {
   std::lock_guard<std::mutex> Guard(Growing);
   std::lock_guard<std::mutex> Inner(Chunks);
   if (IsClosed)
     return;
   IsClosed = true;
-  // Nobody writes behind the chunks that were given out.
+  // Nobody writes behind the last chunk that was given out.
   if (isMine() && ftruncate(Descriptor, HeaderBytes + static_cast<off_t>(Used) *
                                                           ChunkBytes))
     warn(Path + ": " + errorText(errno));
-  // Who still wants to grow it sees that it is closed, or not its own.
+  // A thread that still wants to extend the file sees that it is closed, or no
+  // longer its own.
   if (isMine())
     ::close(Descriptor);
   if (!isStopped())

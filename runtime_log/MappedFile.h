@@ -1,13 +1,13 @@
-//===- Room.h - The mapped file, chunk by chunk ---------------------------===//
+//===- MappedFile.h - The space of the mapped file ------------------------===//
 //
 // Space is allocated on the disk before it is mapped, so that a full disk is an
-// error and no signal, and its pages are touched ahead by the helper thread, so
-// that a report waits for none. A chunk belongs to whom it was given to; what
-// is written to it the kernel keeps, whatever happens to the process.
+// error and not a signal. The helper thread touches the pages in advance, so
+// that no report waits for one. A chunk belongs to the thread that it was given
+// to. The kernel keeps what is written to it, whatever happens to the process.
 //
 //===----------------------------------------------------------------------===//
-#ifndef TPC_ROOM_H
-#define TPC_ROOM_H
+#ifndef TPC_MAPPEDFILE_H
+#define TPC_MAPPEDFILE_H
 
 #include "Config.h"
 #include "Layout.h"
@@ -21,26 +21,27 @@
 
 namespace tpc {
 
-class Room {
+/// The space of one file: grows by extents, which are given out in chunks.
+class MappedFile {
 public:
-  Room(const Config &C, const NewFile &File);
+  MappedFile(const Config &C, const NewFile &File);
 
-  /// Maps one extent more, the first time with the header; false, with \p Why,
-  /// where that cannot be.
+  /// Maps one more extent, the first one together with the header; if that
+  /// fails, returns false and sets \p Why.
   bool grow(std::string &Why);
   /// A chunk for thread \p Thread, which has written \p First records before;
-  /// null where there is no room any more.
+  /// null if there is no more space.
   char *newChunk(uint32_t Kind, uint32_t Thread, uint64_t First, uint64_t Tid);
-  /// Nobody writes to the chunk that ends there any more.
+  /// Nobody writes any more to the chunk that ends at \p EndOfChunk.
   void finish(const void *EndOfChunk);
-  /// Has the pages of all extents in memory.
+  /// Brings the pages of all extents into memory.
   void touch();
-  /// The helper thread's: makes room ahead, gives back what is full.
+  /// For the helper thread: allocates space ahead and releases what is full.
   void lookAhead();
-  /// No more chunks are given out; what was not used is cut off.
+  /// No more chunks are given out; the unused end of the file is cut off.
   void close();
 
-  /// Whether it is stopped: disk full, or the limit reached.
+  /// Whether it has stopped because the disk is full or a limit is reached.
   bool isStopped() const { return Stopped.load(std::memory_order_relaxed); }
   layout::Header &header() { return *Header; }
   const std::string &path() const { return Path; }
@@ -67,7 +68,7 @@ private:
   const uint64_t LimitBytes, ReserveBytes;
   layout::Header *Header = nullptr;
 
-  std::mutex Chunks; ///< of the next six
+  std::mutex Chunks; ///< for the next six
   std::vector<Extent> Extents;
   uint32_t Used = 0; ///< chunks given out
   uint32_t Ahead = 1;
@@ -81,4 +82,4 @@ private:
 
 } // namespace tpc
 
-#endif // TPC_ROOM_H
+#endif // TPC_MAPPEDFILE_H
