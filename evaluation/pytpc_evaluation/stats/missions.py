@@ -93,8 +93,8 @@ def load_missions(
     """Read missions.
 
     Args:
-        paths: what `pytpc.ingest.reading.read` takes; a folder that is no recording stands for the missions
-            in its folders.
+        paths: what `pytpc.ingest.reading.read` takes; a folder that is no recording stands for
+            the missions in its folders.
         treatments: a folder of treatments, each in a folder of its name. A mission's treatment is
             what ``treatment.json`` in its folder says; else that of ``treatments`` which run.json
             names, or which the mission's folder or the one above is called after; else the one
