@@ -130,7 +130,7 @@ static void edge(Thread &T, Site &S, Slot &In, const Report &R) {
   int8_t Last = S.Last.load(std::memory_order_relaxed);
   if (Last == R.Result)
     return; // another thread was first
-  S.Last.store(R.Result, std::memory_order_relaxed);
+  S.Last.store(R.Result ? 1 : 0, std::memory_order_relaxed);
   bool IsFlop = Last >= 0;
   In.Kept.Flops += IsFlop;
   if (isOverCap(S, IsFlop))

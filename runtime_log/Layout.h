@@ -95,7 +95,7 @@ struct Summary {
   int64_t BeginRos, EndRos;
   uint64_t Spare[2];
 };
-static_assert(sizeof(Summary) == 5 * RecordBytes);
+static_assert(sizeof(Summary) == size_t(5) * RecordBytes);
 
 struct Slot {
   Summary Kept;

@@ -36,7 +36,7 @@ bool isOverCap(Site &S, bool IsFlop) {
 
 /// One report with caps in force.
 static void capped(Thread &T, Site &S, const Report &R) {
-  int8_t Last = S.Last.exchange(R.Result, std::memory_order_relaxed);
+  int8_t Last = S.Last.exchange(R.Result ? 1 : 0, std::memory_order_relaxed);
   if (!isOverCap(S, Last >= 0 && Last != R.Result))
     emit(T, S, R, 0);
 }

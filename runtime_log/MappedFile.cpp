@@ -97,8 +97,8 @@ bool MappedFile::grow(std::string &Why) {
   }
   if (!isAllowed(End, Why))
     return false;
-  if (int Error = allocate(Descriptor, Header ? Begin : 0,
-                           Header ? ExtentBytes : End)) {
+  if (int Error = allocate(Descriptor, Header ? static_cast<off_t>(Begin) : 0,
+                           static_cast<off_t>(Header ? ExtentBytes : End))) {
     Why = errorText(Error);
     return false;
   }
@@ -136,7 +136,7 @@ char *MappedFile::newChunk(uint32_t Kind, uint32_t Thread, uint64_t First,
       uint32_t Mapped = static_cast<uint32_t>(Extents.size()) * ChunksOfExtent;
       if (Used < Mapped) {
         Extent &E = Extents[Used / ChunksOfExtent];
-        char *Chunk = E.Base + (Used % ChunksOfExtent) * ChunkBytes;
+        char *Chunk = E.Base + size_t(Used % ChunksOfExtent) * ChunkBytes;
         ++Used;
         Starved |= !E.IsTouched;
         auto *H = reinterpret_cast<ChunkHeader *>(Chunk);
@@ -208,7 +208,8 @@ void MappedFile::lookAhead() {
           E.Base = nullptr;
         }
       if (IsClosed || isStopped() ||
-          Extents.size() * ChunksOfExtent - Used >= Ahead * ChunksOfExtent)
+          Extents.size() * ChunksOfExtent - Used >=
+              size_t(Ahead) * ChunksOfExtent)
         break;
     }
     std::lock_guard<std::mutex> Guard(Growing);

@@ -188,7 +188,7 @@ bool Runtime::choose(const Config &C) {
                 ? (IsCapped ? Mode::Capped : Mode::FileEvery)
             : IsCapped ? Mode::Capped
                        : Mode::SinkEvery;
-  tpc_reporting = C.Sink != SinkKind::Off;
+  tpc_reporting = C.Sink == SinkKind::Off ? 0 : 1;
   if (Old && Old != NowSink.load())
     Old->end();
   return true;
@@ -219,7 +219,8 @@ std::string Runtime::status() {
   std::string Text =
       std::string("sink=") + text(Held.Sink) + " policy=" + text(Held.Policy);
   if (Held.Policy == Policy::Edges)
-    Text += " period=" + std::to_string(Held.PeriodNs / 1e9);
+    Text +=
+        " period=" + std::to_string(static_cast<double>(Held.PeriodNs) / 1e9);
   if (Held.SiteCap)
     Text += " site_cap=" + std::to_string(Held.SiteCap);
   if (Held.ProcessCap)

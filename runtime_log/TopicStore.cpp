@@ -10,7 +10,7 @@ static constexpr size_t MostBlocks = 16;
 static constexpr uint32_t BlockEntries = 4096;
 /// A block ends here even with few entries, so that long keys cannot make it
 /// large.
-static constexpr size_t BlockBytes = 512 * 1024;
+static constexpr size_t BlockBytes = size_t(512) * 1024;
 
 /// Stands before each entry in a block. The key with its NUL follows and, for a
 /// summary, the rest of its text.

@@ -25,6 +25,7 @@ static void say(const char *What, const std::string &Text) {
 static int become(const std::string &Program, std::vector<std::string> Words) {
   std::vector<char *> Pointers;
   Words.insert(Words.begin(), Program);
+  Pointers.reserve(Words.size() + 1);
   for (std::string &Word : Words)
     Pointers.push_back(Word.data());
   Pointers.push_back(nullptr);

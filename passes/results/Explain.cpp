@@ -240,10 +240,10 @@ static void shorten(std::vector<PathStep> &Path, size_t Most) {
   if (Path.size() <= Most)
     return;
   size_t Left = Path.size() - Most + 1;
-  auto From = Path.begin() + Most / 2;
+  auto From = Path.begin() + static_cast<ptrdiff_t>(Most / 2);
   *From = {PathStep::Omitted, nullptr,
            std::to_string(Left) + " steps left out"};
-  Path.erase(From + 1, From + Left);
+  Path.erase(From + 1, From + static_cast<ptrdiff_t>(Left));
 }
 
 std::vector<PathStep> Explainer::path(const Comparison &C, size_t Most) {

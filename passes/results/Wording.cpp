@@ -64,7 +64,7 @@ std::string Wording::nameOf(const Value *Pointer, bool Scalar) const {
   return "";
 }
 
-std::string Wording::with(std::string Before, StringRef Preposition,
+std::string Wording::with(const std::string &Before, StringRef Preposition,
                           const std::string &Name) {
   return Name.empty() ? Before
                       : (Before + " " + Preposition + " " + Name).str();

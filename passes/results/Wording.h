@@ -39,8 +39,8 @@ public:
   std::string value(const llvm::Value *V) const;
   /// \p Before and, for example, `into Node::limit_`; without the name if there
   /// is none.
-  static std::string with(std::string Before, llvm::StringRef Preposition,
-                          const std::string &Name);
+  static std::string with(const std::string &Before,
+                          llvm::StringRef Preposition, const std::string &Name);
   std::string argument(const llvm::Argument &Arg) const;
   /// `published on /camera`
   std::string exposed(const ExposingStatement &E) const;

@@ -294,17 +294,16 @@ void Slicer::enterDerived(const Value *Pointer) {
     auto *I = dyn_cast<Instruction>(U.getUser());
     if (!I || Accesses.isPutIn(U))
       continue;
+    // A store into a local object is found by its place.
+    const auto *Store = dyn_cast<StoreInst>(I);
+    bool IsStoredTo = Store && Store->getPointerOperand() == Pointer &&
+                      !isa<AllocaInst>(getUnderlyingObject(Pointer));
+    const auto *Call = dyn_cast<CallBase>(I);
     if (isa<GetElementPtrInst>(I))
       enterDerived(I);
-    else if (auto *Store = dyn_cast<StoreInst>(I);
-             Store && Store->getPointerOperand() == Pointer &&
-             // A store into a local object is found by its place.
-             !isa<AllocaInst>(getUnderlyingObject(Pointer)))
+    else if (IsStoredTo || isa<MemTransferInst>(I))
       enter(I, Gives, Why::Writes);
-    else if (isa<MemTransferInst>(I))
-      enter(I, Gives, Why::Writes);
-    else if (auto *Call = dyn_cast<CallBase>(I);
-             Call && !isa<IntrinsicInst>(I) && !Settled.contains(I) &&
+    else if (Call && !isa<IntrinsicInst>(I) && !Settled.contains(I) &&
              !endsLife(*Call))
       enter(I, Touches, Why::Writes);
   }

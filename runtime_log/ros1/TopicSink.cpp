@@ -35,7 +35,7 @@ namespace tpc {
 namespace {
 
 constexpr const char *Topic = "/threshold_information";
-constexpr size_t MessageBytes = 64 * 1024;
+constexpr size_t MessageBytes = size_t(64) * 1024;
 /// Messages that wait for a slow subscriber: 100 seconds at five a second, and
 /// at most 32 MiB.
 constexpr uint32_t QueueMessages = 512;
