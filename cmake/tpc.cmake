@@ -3,7 +3,7 @@
 #   -DCMAKE_TOOLCHAIN_FILE=.../tpc.cmake   what `pytpc build` does
 #   -DCMAKE_PROJECT_INCLUDE=.../tpc.cmake  with the compilers chosen elsewhere
 #   include(.../tpc.cmake)                 at the top of a CMakeLists.txt, as
-#                                          `python -m pytpc.workspace.patch` puts it there
+#                                          `pytpc patch` puts it there
 #
 # Before project() it chooses the compilers. After project() it adds flags to the rules by which
 # CMake compiles and links. If it cannot do that, it prints one warning and does not change the

@@ -65,7 +65,7 @@ def diagnose(
         InputError: the mission has no marks, or something cannot be read.
         TypeError: both ``question`` and other settings are given, or there is no such setting.
     """
-    asked = question_of(question, settings)
+    asked = question_of(question, settings, DiagnoseSettings.__annotations__)
     recording, static = read_marked(mission), load_static(static_info)
     if question is None:
         source = None if isinstance(mission, Recording) else Path(mission)
@@ -131,9 +131,9 @@ class Rankings(TableSequence[MarkRanking]):
     @property
     def declared(self) -> Sequence[Declared]:
         """The declared ranges: those of the question, or else those in the sources."""
-        if self.question.declared:
-            return self.question.declared
-        return find_declared(self.static_info, self.source)
+        given = self.question.declared
+        # Whoever looked and found none has put an own list there.
+        return find_declared(self.static_info, self.source) if given is PLAIN.declared else given
 
     def only(self, parameter: str) -> Rankings:
         """The rankings of one parameter, at its positions.
@@ -218,7 +218,7 @@ def rank(
         InputError: the mission has no marks, or something cannot be read.
         TypeError: both ``question`` and other settings are given, or there is no such setting.
     """
-    asked = question_of(question, settings)
+    asked = question_of(question, settings, RankSettings.__annotations__)
     source = None if isinstance(mission, Recording) else Path(mission)
     return Rankings.of(read_marked(mission), load_static(static_info), asked, source)
 
@@ -239,5 +239,5 @@ def curves(
         InputError: something cannot be read.
         TypeError: both ``question`` and other settings are given, or there is no such setting.
     """
-    asked = question_of(question, settings)
+    asked = question_of(question, settings, RankSettings.__annotations__)
     return rank_curves(read(mission), load_static(static_info), asked, step_s=step_s)

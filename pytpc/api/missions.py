@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -100,15 +100,17 @@ def find_declared(
     return declared_in(static_info, [] if source is None else [source], on_skipped)
 
 
-def question_of(question: Question | None, settings: Mapping[str, Any]) -> Question:
-    """The question that is given, or one with these settings.
+def question_of(
+    question: Question | None, settings: Mapping[str, Any], known: Collection[str]
+) -> Question:
+    """The question that is given, or one with these settings, of which a verb knows some.
 
     Raises:
-        TypeError: both are given, or there is no such setting.
+        TypeError: both are given, or a setting is not among ``known``.
     """
     if question is not None and settings:
         raise TypeError("give a question or single settings, not both")
-    unknown = sorted(settings.keys() - {field.name for field in fields(Question)})
+    unknown = sorted(settings.keys() - known)
     if unknown:
         raise TypeError(f"there is no setting {', '.join(unknown)}")
     return Question(**settings) if question is None else question
@@ -137,7 +139,7 @@ def convert(
     Args:
         inputs: bags, binary files, logs, CSV, folders of such files, converted missions.
         output: a folder, or a file: .parquet (the events) or .csv (the thesis's form). Its disk
-            needs 35 bytes of temporary space per report.
+            needs 36 bytes of temporary space per report.
         tolerance_ns: how far apart in time one report may be in two inputs.
         on_read: called with (bytes read, all bytes).
         on_written: called with (reports written, all reports).

@@ -125,11 +125,13 @@ def what_if(
     """What another value of a parameter would have changed in a recorded run.
 
     Args:
-        mission: the run. static_info: what the analysis found. parameter: its name in the source,
-        or on the robot. value: in the parameter's own unit. **settings: ``kind``: the type of
-        error; None: the type of each mark. ``marks``: the marks to
-            answer; None: those of the mission of that type, or without a type. ``window_s``: how
-            long before a mark counts as near to it, in seconds.
+        mission: the run.
+        static_info: what the analysis found.
+        parameter: its name in the source, or on the robot.
+        value: in the parameter's own unit.
+        **settings: ``kind``: the type of error; None: the type of each mark. ``marks``: the marks
+            to answer; None: those of the mission of that type, or without a type. ``window_s``:
+            how long before a mark counts as near to it, in seconds.
 
     Raises:
         InputError: no comparison is with that parameter, or something cannot be read.

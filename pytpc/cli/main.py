@@ -20,7 +20,7 @@ SUMMARIES = {
     "build": ("workspace_commands", "Build a workspace with analysis and instrumentation."),
     "collect": ("static_commands", "Merge the static information of link units into one file."),
     "completion": ("completion_commands", "Print the shell's completion script for pytpc."),
-    "convert": ("mission_commands", "Convert bags, binary files, logs or CSV to Parquet."),
+    "convert": ("convert_commands", "Convert bags, binary files, logs or CSV to Parquet."),
     "doctor": ("machine_commands", "Check your setup and print the fix for each problem."),
     "env": ("env_commands", "Print shell commands that make Python nodes report."),
     "explain": ("explain_commands", "Show how a parameter reaches what the robot exposes."),

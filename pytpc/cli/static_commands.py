@@ -18,7 +18,6 @@ from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import dump_json
 from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import (
-    CONSTANTS,
     JSON,
     NO_PYTHON,
     PATH,
@@ -105,7 +104,9 @@ def _selecting(command: Callable[..., None]) -> Callable[..., None]:
 @STATIC_OUTPUT
 @NO_PYTHON
 @PYTHON_RULES
-@CONSTANTS
+@click.option(
+    "--constants", is_flag=True, help="Report comparisons with constants in Python nodes, too."
+)
 def collect_command(
     sources: tuple[Path, ...],
     *,

@@ -1,6 +1,8 @@
 """Declarations that dynamic_reconfigure's servers published, in a ROS 1 bag.
 
 A server says on NODE/parameter_descriptions (latched) which parameters there are and their ranges.
+The layout is that of dynamic_reconfigure/ConfigDescription: little endian; a string and a list
+begin with their length as uint32. rosbags would refuse a message for one byte that is not UTF-8.
 """
 
 from __future__ import annotations
@@ -10,14 +12,9 @@ import struct
 from pathlib import Path
 from typing import Any
 
-from rosbags.serde import SerdeError
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore
-from rosbags.typesys.base import TypesysError
-
 from pytpc.ingest.bag_chunks import MAGIC, BrokenBagError, messages, read_index
 from pytpc.recording.declaration import Declared, RawValues, make_declared
 
-_UNREADABLE = (TypesysError, SerdeError, struct.error, AssertionError, LookupError, AttributeError)
 _TYPE = "dynamic_reconfigure/msg/ConfigDescription"
 _TOPIC = "/parameter_descriptions"
 
@@ -30,64 +27,56 @@ def read_declared_bag(path: Path) -> tuple[list[Declared], list[str]]:
     Raises:
         OSError: the bag cannot be read.
     """
-    last: dict[str, tuple[bytes, str]] = {}
+    last: dict[str, bytes] = {}
     try:
         with path.open("rb") as stream:
             if stream.read(len(MAGIC)) != MAGIC:
                 return [], []
             index = read_index(stream)
-            servers = {
-                number: one
+            topics = {
+                number: one.topic
                 for number, one in index.connections.items()
                 if one.msgtype == _TYPE and one.topic.endswith(_TOPIC)
             }
-            for chunk in messages(stream, index, servers.keys()) if servers else ():
+            for chunk in messages(stream, index, topics.keys()) if topics else ():
                 for row, number in enumerate(chunk.connection.tolist()):
-                    server = servers[number]
-                    raw = chunk.data[chunk.begin[row] : chunk.end[row]]
-                    last[server.topic] = raw, server.definition
+                    last[topics[number]] = bytes(chunk.data[chunk.begin[row] : chunk.end[row]])
     except BrokenBagError as error:
         return [], [f"{path}: descriptions of parameters: {error}"]
     found: list[Declared] = []
     skipped = []
-    for topic, (raw, definition) in sorted(last.items()):
+    for topic, raw in sorted(last.items()):
         try:
-            found += decode_description(raw, topic, definition)
-        except ValueError:
+            found += decode_description(raw, topic)
+        except (struct.error, ValueError, IndexError):
             skipped.append(f"{path}: the message on {topic} is not a ConfigDescription")
     return found, skipped
 
 
-def decode_description(raw: bytes, topic: str, definition: str) -> list[Declared]:
+def decode_description(raw: bytes, topic: str) -> list[Declared]:
     """The declarations in a serialised ConfigDescription.
 
     Raises:
-        ValueError: it is not such a message, or ``definition`` is not its definition.
+        ValueError, IndexError, struct.error: it is not such a message.
     """
-    store = get_typestore(Stores.EMPTY)
-    try:
-        store.register(get_types_from_msg(definition, _TYPE))
-        said: Any = store.deserialize_ros1(raw, _TYPE)
-        lows, highs, defaults = (
-            {one.name: one.value for one in (*of.bools, *of.ints, *of.strs, *of.doubles)}
-            for of in (said.min, said.max, said.dflt)
-        )
-        parameters = [one for group in said.groups for one in group.parameters]
-    except _UNREADABLE as error:
-        raise ValueError(f"not a ConfigDescription: {error}") from error
+    reader = _DescriptionReader(raw)
+    parameters = []
+    for _ in range(reader.number("<I")):
+        reader.group()
+        parameters += [reader.parameter() for _ in range(reader.number("<I"))]
+        reader.skip("<ii")
+    highs, lows, defaults = reader.config(), reader.config(), reader.config()
     node = topic.removesuffix(_TOPIC)
     found = []
-    for one in parameters:
-        if one.type not in {"bool", "int", "double", "str"}:
-            raise ValueError(one.type)
+    for name, type_, description, edit_method in parameters:
+        if type_ not in {"bool", "int", "double", "str"}:
+            raise ValueError(type_)
         found.append(
             make_declared(
-                f"{node}/{one.name}",
-                one.type,
-                RawValues(
-                    lows.get(one.name), highs.get(one.name), defaults.get(one.name), one.description
-                ),
-                constants=_constants(one.edit_method),
+                f"{node}/{name}",
+                type_,
+                RawValues(lows.get(name), highs.get(name), defaults.get(name), description),
+                constants=_constants(edit_method),
                 place=f"topic {topic}",
             )
         )
@@ -103,3 +92,58 @@ def _constants(edit_method: str) -> object:
     except (ValueError, SyntaxError, RecursionError, MemoryError):
         return None
     return known.get("enum") if isinstance(known, dict) else None
+
+
+class _DescriptionReader:
+    """Reads the bytes of a message in order."""
+
+    def __init__(self, raw: bytes) -> None:
+        self._raw = raw
+        self._at = 0
+
+    def group(self) -> None:
+        """Skip the name and type of a group."""
+        self.text()
+        self.text()
+
+    def skip(self, form: str) -> tuple[Any, ...]:
+        values = struct.unpack_from(form, self._raw, self._at)
+        self._at += struct.calcsize(form)
+        return values
+
+    def number(self, form: str) -> int:
+        value: int = self.skip(form)[0]
+        return value
+
+    def text(self) -> str:
+        length = self.number("<I")
+        end = self._at + length
+        if end > len(self._raw):
+            raise IndexError(end)
+        text = self._raw[self._at : end].decode("utf-8", "replace")
+        self._at = end
+        return text
+
+    def parameter(self) -> tuple[str, str, str, str]:
+        name, type_ = self.text(), self.text()
+        self.skip("<I")
+        return name, type_, self.text(), self.text()
+
+    def config(self) -> dict[str, object]:
+        values: dict[str, object] = {}
+        for _ in range(self.number("<I")):
+            name = self.text()
+            values[name] = bool(self.number("<B"))
+        for _ in range(self.number("<I")):
+            name = self.text()
+            values[name] = self.number("<i")
+        for _ in range(self.number("<I")):
+            name = self.text()
+            values[name] = self.text()
+        for _ in range(self.number("<I")):
+            name = self.text()
+            values[name] = self.skip("<d")[0]
+        for _ in range(self.number("<I")):
+            self.text()
+            self.skip("<Bii")
+        return values

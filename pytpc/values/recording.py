@@ -126,6 +126,7 @@ def save_origins(
         env: in which the launch file was read.
 
     An error becomes the ``reason`` why no origin is known: the mission was flown.
+
     Raises:
         TpcError: the file cannot be written.
     """

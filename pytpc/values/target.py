@@ -287,7 +287,10 @@ def _where(path: Path, real: Path) -> tuple[str, ...]:
     """Notes on the file that a change goes to."""
     notes = []
     if path.resolve() != real:
-        same = path.is_file() and filecmp.cmp(path, real, shallow=False)
+        try:
+            same = filecmp.cmp(path, real, shallow=False)
+        except OSError:
+            same = False
         differs = "" if same else ", which is older or newer than it"
         notes.append(
             f"the robot reads the installed copy {path}{differs}: build the workspace again for"
@@ -297,7 +300,10 @@ def _where(path: Path, real: Path) -> tuple[str, ...]:
         notes.append(
             "this is an installed copy, and no source of it is found: a build overwrites it"
         )
-    others = real.stat().st_nlink - 1
+    try:
+        others = real.stat().st_nlink - 1
+    except OSError:
+        others = 0
     if others > 0:
         notes.append(f"{others} other names (hard links) of this file keep the old text")
     return tuple(notes)

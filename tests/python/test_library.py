@@ -13,6 +13,7 @@ from mission_samples import comparison, events, ns, static_info
 import pytpc
 import pytpc_evaluation
 from pytpc import api
+from pytpc.api import diagnosing
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.suggestion.advise import join_advice
@@ -241,3 +242,26 @@ def test_all_marks_together_are_escaped():
 def test_a_misspelt_setting_of_diagnose_is_an_error():
     with pytest.raises(TypeError, match=r"^there is no setting typs$"):
         pytpc.diagnose(MISSION, STATIC, typs="ignore")
+
+
+@pytest.mark.parametrize(
+    ("verb", "settings"),
+    [
+        (pytpc.rank, {"reference": MISSION}),
+        (pytpc.rank, {"flown": (1.0,)}),
+        (pytpc.curves, {"top": 3}),
+        (pytpc.diagnose, {"declared": ()}),
+    ],
+)
+def test_a_setting_of_another_verb_is_an_error(verb, settings):
+    with pytest.raises(TypeError, match=f"^there is no setting {next(iter(settings))}$"):
+        verb(MISSION, STATIC, **settings)
+
+
+def test_declared_ranges_are_looked_for_once(monkeypatch):
+    looked = []
+    monkeypatch.setattr(diagnosing, "find_declared", lambda *_: looked.append(1) or [])
+    rankings = pytpc.rank(MISSION, STATIC)
+    assert rankings.declared == [] and len(looked) == 1
+    asked = replace(rankings, question=replace(rankings.question, declared=[]))
+    assert asked.declared == [] and len(looked) == 1

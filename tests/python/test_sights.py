@@ -266,7 +266,7 @@ def test_what_was_recorded_late_was_seen_when_it_happened(tmp_path):
     for time in (1.5, 3.0):
         bag.add("/camera/picture", time, "image_capture/msg/Picture", 1, np.zeros(3, np.uint8))
     bag.writer.close()
-    seen = shared_module("bag").read(path, field.observer.OBSERVER)
+    seen = shared_module("bag").read_bag(path, field.observer.OBSERVER)
     assert [(each.time, each.pictures) for each in seen] == [(1.0, 0), (2.0, 1), (3.0, 2)]
 
 

@@ -4,8 +4,7 @@ The smallest change is often not enough: a counter reaches the next number, too,
 bit. This looks at all marks of a mission at once. The evidence, the strongest first:
 
 1. the value of a good run, in whichever direction: it worked, while the direction in the log
-depends
-   on the types of error that people named;
+   depends on the types of error that people named;
 2. the direction in the log (`pytpc.diagnosis.suggestion.lasting`);
 3. the default in the source, or a declared one, if it would last; if the log cannot say how far is
    enough (values that grow until the program acts), any default beyond the smallest change;

@@ -55,15 +55,9 @@ class RawPublisher:
     Args:
         master: the ROS master; its caller is the node that this is.
         topics: with the type of their messages.
-        on_shutdown: called when the master or ``rosnode kill`` ends this node.
     """
 
-    def __init__(
-        self,
-        master: Master,
-        topics: Mapping[str, MessageType],
-        on_shutdown: Callable[[], None] = lambda: None,
-    ) -> None:
+    def __init__(self, master: Master, topics: Mapping[str, MessageType]) -> None:
         """See the class; on return subscribers are served, though none knows of it yet."""
         self._master = master
         self._topics = dict(topics)
@@ -71,11 +65,9 @@ class RawPublisher:
         self._links: dict[str, list[tuple[str, socket.socket]]] = {topic: [] for topic in topics}
         self._host = own_host(os.environ, master.uri)
         self._listener = socket.create_server(("", 0))
-        self._on_shutdown = on_shutdown
         answers: dict[str, Callable[..., object]] = {
             "requestTopic": self._request,
             "getPublications": self._publications,
-            "shutdown": self._shutdown,
         }
         self._server = SlaveServer(self._host, answers, "")
         threading.Thread(target=self._accept, daemon=True).start()
@@ -145,10 +137,6 @@ class RawPublisher:
 
     def _publications(self, _caller: str) -> list[list[str]]:
         return [[topic, kind.name] for topic, kind in self._topics.items()]
-
-    def _shutdown(self, _caller: str, _reason: str = "") -> int:
-        self._on_shutdown()
-        return 0
 
     def _accept(self) -> None:
         while True:

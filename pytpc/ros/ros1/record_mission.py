@@ -252,7 +252,7 @@ def dump_params(env: Mapping[str, str], path: Path) -> None:
 
 
 def record_graph(
-    options: RecordOptions, *, stop: threading.Event, env: Mapping[str, str] | None = None
+    options: RecordOptions, stop: threading.Event, env: Mapping[str, str] | None = None
 ) -> MissionRun:
     """Record /rosout, /threshold_information, all observers' marks and the topics asked for.
 

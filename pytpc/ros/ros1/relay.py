@@ -1,6 +1,8 @@
 """The node that passes reports on from /rosout to /threshold_information.
 
-It is for readers that know only the topic, and nodes that report by log messages.
+It is for readers that know only the topic, and nodes that report by log messages. The raw
+subscriber reads, because it loses nothing while nodes start. rospy publishes: it has a queue and a
+thread for each subscriber, so that a slow one delays no other.
 """
 
 from __future__ import annotations
@@ -10,13 +12,12 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 
-from pytpc.base.errors import RunError
+from pytpc.base.errors import MissingToolError, RunError
 from pytpc.base.signals import stop_on_signals
 from pytpc.base.wording import many
 from pytpc.ingest.losses import LossCounter
 from pytpc.ingest.ros1 import decode_log
 from pytpc.ros.ros1.master import Master, own_host, uri_of
-from pytpc.ros.ros1.publisher import STRING, RawPublisher, encode_string
 from pytpc.ros.ros1.subscriber import RawSubscriber
 
 ROSOUT = "/rosout"
@@ -25,6 +26,8 @@ TOPIC = "/threshold_information"
 _NODE = "tpc_relay"
 _REPORT = "threshold_information"
 _ACCOUNTS = ("threshold_summary", "threshold_dropped")
+# What a slow subscriber may leave waiting before rospy drops the oldest.
+_QUEUE = 65_536
 _WATCH_S = 2.0
 _POLL_S = 0.2
 
@@ -116,7 +119,7 @@ class MasterWatch:
             self._gone = False
         except RunError as error:
             if not self._gone:
-                self._say(f"{error}; connected nodes are still heard; waiting for the master")
+                self._say(f"waiting for the master, while connected nodes are still heard: {error}")
             self._gone = True
 
 
@@ -129,32 +132,45 @@ def run(arguments: Sequence[str], say: Say) -> None:
 
     Raises:
         RunError: the master does not answer at the start.
+        MissingToolError: rospy is not installed.
     """
+    try:
+        import rospy  # noqa: PLC0415 (a second, and only with ROS)
+        from std_msgs.msg import String  # noqa: PLC0415
+    except ImportError as error:
+        raise MissingToolError(
+            "rospy is not installed; install it with: apt-get install python3-rospy"
+        ) from error
     stop = stop_on_signals()
     uri = uri_of(os.environ)
     name = _name(arguments)
+    # First, because rospy waits forever for a master.
     subscriber = RawSubscriber(Master(uri, f"{name}_reader"), own_host(os.environ, uri), [ROSOUT])
-    publisher = RawPublisher(Master(uri, name), {TOPIC: STRING}, on_shutdown=stop.set)
-
-    def register() -> None:
-        publisher.register()
-        subscriber.register()
-
     try:
-        publisher.register()
-        relay = Relay(lambda line: publisher.publish(TOPIC, encode_string(line)))
+        rospy.init_node(
+            name.strip("/"),
+            argv=[_NODE, *(word for word in arguments if ":=" in word)],
+            disable_signals=True,
+            disable_rosout=True,
+        )
+        publisher = rospy.Publisher(TOPIC, String, queue_size=_QUEUE)
+        relay = Relay(lambda line: publisher.publish(String(line)))
+        node = Master(uri, rospy.get_name())
+        watch = MasterWatch(
+            lambda: _knows(node), lambda: _register(subscriber, node, rospy.get_node_uri()), say
+        )
         say(f"passing on reports from {ROSOUT} to {TOPIC}")
-        _serve(subscriber, relay, MasterWatch(publisher.is_registered, register, say), stop)
+        _serve(subscriber, relay, watch, lambda: stop.is_set() or rospy.is_shutdown())
         say(relay.account())
     finally:
         subscriber.close()
-        publisher.close()
+        rospy.signal_shutdown("the relay ends")
 
 
 def _serve(
-    subscriber: RawSubscriber, relay: Relay, watch: MasterWatch, stop: threading.Event
+    subscriber: RawSubscriber, relay: Relay, watch: MasterWatch, ended: Callable[[], bool]
 ) -> None:
-    """Pass on until ``stop``; the watch has a thread, because a dead host answers late."""
+    """Relay until ``ended``. The watch has its own thread, because a dead host answers late."""
 
     def look() -> None:
         while not over.wait(_WATCH_S):
@@ -163,7 +179,7 @@ def _serve(
     over = threading.Event()
     thread = threading.Thread(target=look, daemon=True)
     thread.start()
-    while not stop.is_set():
+    while not ended():
         for source, data in subscriber.poll(_POLL_S):
             relay.take(data, source.node)
     over.set()
@@ -175,6 +191,17 @@ def _serve(
             break
         for source, data in waiting:
             relay.take(data, source.node)
+
+
+def _knows(node: Master) -> bool:
+    """Whether the master lists this node among the publishers of the topic."""
+    return node.caller in node.state().publishers.get(TOPIC, ())
+
+
+def _register(subscriber: RawSubscriber, node: Master, uri: str) -> None:
+    # rospy does not register again by itself; subscribers are told by the master.
+    node.call("registerPublisher", TOPIC, "std_msgs/String", uri)
+    subscriber.register()
 
 
 def _name(arguments: Sequence[str]) -> str:
