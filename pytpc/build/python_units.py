@@ -37,7 +37,7 @@ _PRODUCTS = frozenset({"build", "devel", "install", "log", "__pycache__", "node_
 
 
 @dataclass(frozen=True, slots=True)
-class Scripts:
+class PackageScripts:
     """The scripts that are nodes, and those that could not be classified, with the reason."""
 
     entries: tuple[Entry, ...]
@@ -56,7 +56,7 @@ class PythonUnits:
     folders: tuple[Path, ...] = ()
 
 
-def scripts_at(path: Path, rules: Rules, beside: Sequence[Path] = ()) -> Scripts:
+def scripts_at(path: Path, rules: Rules, beside: Sequence[Path] = ()) -> PackageScripts:
     """The scripts that a path means: itself, or all nodes in a folder.
 
     Args:
@@ -71,12 +71,12 @@ def scripts_at(path: Path, rules: Rules, beside: Sequence[Path] = ()) -> Scripts
     faults: list[InputError] = []
     found = entries(path, faults.append, rules, beside)
     left_out = [_fault(path, error)[1] for error in faults]
-    return Scripts(tuple(found), tuple(dict.fromkeys(left_out)))
+    return PackageScripts(tuple(found), tuple(dict.fromkeys(left_out)))
 
 
 def scripts_of(
     workspace: Path, packages: Iterable[Path], rules: Rules, *, tests: bool = False
-) -> Scripts:
+) -> PackageScripts:
     """The scripts of packages of a workspace; all of it is looked at for what they import.
 
     Args:
@@ -98,11 +98,11 @@ def scripts_of(
         for root, one in (_fault(workspace, error) for error in faults)
         if os.path.realpath(root) in roots
     ]
-    return Scripts(tuple(_named_apart(found.values())), tuple(dict.fromkeys(left_out)))
+    return PackageScripts(tuple(_named_apart(found.values())), tuple(dict.fromkeys(left_out)))
 
 
 def analyse_scripts(
-    scripts: Scripts,
+    scripts: PackageScripts,
     rules: Rules,
     on_progress: Callable[[int, int], None] | None = None,
     seconds: float = SECONDS,
@@ -159,14 +159,14 @@ def analyse_workspaces(
     return replace(units, folders=tuple(Path(os.path.realpath(folder)) for folder in found))
 
 
-def joined(parts: Iterable[Scripts]) -> Scripts:
+def joined(parts: Iterable[PackageScripts]) -> PackageScripts:
     """The scripts of several packages, each once."""
     found: dict[tuple[Path, str], Entry] = {}
     left_out: dict[LeftOut, None] = {}
     for part in parts:
         found.update(((entry.script, entry.name), entry) for entry in part.entries)
         left_out.update(dict.fromkeys(part.left_out))
-    return Scripts(tuple(found.values()), tuple(left_out))
+    return PackageScripts(tuple(found.values()), tuple(left_out))
 
 
 def names_of(units: Iterable[LinkUnit | LeftOut]) -> set[Name]:

@@ -17,7 +17,7 @@ _Item = TypeVar("_Item")
 
 
 @dataclass(frozen=True, slots=True)
-class Exposed:
+class ExposedDetails:
     """An exposing statement: ``FILE:LINE``, and its topic where it is known."""
 
     place: str
@@ -38,7 +38,7 @@ class Details:
     unit: LinkUnit
     defaults: tuple[Default, ...]
     reads: tuple[str, ...]
-    exposed: tuple[Exposed, ...]
+    exposed: tuple[ExposedDetails, ...]
     condition: Condition | None
     note: str
 
@@ -98,7 +98,7 @@ def details(static: StaticInfo, tpc: Tpc, answer: Answer) -> Details:
         defaults=tuple({repr(each.default): each.default for _, each in found}.values()),
         reads=_once(f"{at.file}:{at.lineno}" for _, each in found for at in each.param_reads),
         exposed=_once(
-            Exposed(f"{at.file}:{at.lineno}", each.topic)
+            ExposedDetails(f"{at.file}:{at.lineno}", each.topic)
             for _, each in found
             for at in (each.exposed_at, *each.publishes)
         ),

@@ -108,7 +108,7 @@ def find_fault(data: bytes) -> SyntaxFault | None:
 
 
 @dataclass(frozen=True, slots=True)
-class Argument:
+class CmakeArgument:
     """An argument of a command: its text without quotes and escapes, variables not looked up."""
 
     text: str
@@ -121,7 +121,7 @@ class Command:
 
     name: str
     line: int
-    arguments: list[Argument]
+    arguments: list[CmakeArgument]
 
 
 def commands(data: bytes) -> list[Command]:
@@ -142,14 +142,14 @@ def _parse(data: bytes) -> tuple[list[Command], SyntaxFault | None]:
     return found, None
 
 
-def _argument(token: Token) -> Argument:
+def _argument(token: Token) -> CmakeArgument:
     text = token.text.decode("utf-8", "replace")
     if token.kind is Kind.BRACKET:
         opening = text.index("[", 1) + 1
-        return Argument(text[opening:-opening].removeprefix("\n"), True)
+        return CmakeArgument(text[opening:-opening].removeprefix("\n"), True)
     if token.kind is Kind.QUOTED:
         text = text[1:-1].replace("\\\n", "")
-    return Argument(_ESCAPE.sub(_unescaped, text), token.kind is Kind.QUOTED)
+    return CmakeArgument(_ESCAPE.sub(_unescaped, text), token.kind is Kind.QUOTED)
 
 
 def _unescaped(match: re.Match[str]) -> str:
@@ -194,7 +194,7 @@ def _open(line: int, shown: str, stream: Iterator[Token]) -> None:
         raise _unexpected(f'expected "(" after {shown}', opening)
 
 
-def _arguments(line: int, shown: str, stream: Iterator[Token]) -> Iterator[Argument]:
+def _arguments(line: int, shown: str, stream: Iterator[Token]) -> Iterator[CmakeArgument]:
     """The arguments up to the closing parenthesis; parentheses among them are left out."""
     depth = 1
     before = Kind.SPACE

@@ -7,7 +7,7 @@ import pytest
 from static_units import KEYS, comparison, unit
 
 from pytpc.conditions.lookup import Answer
-from pytpc.conditions.tpc_details import Exposed, details, in_words, shown_default
+from pytpc.conditions.tpc_details import ExposedDetails, details, in_words, shown_default
 from pytpc.static.link_unit import LinkUnit, Transform
 from pytpc.static.static_info import StaticInfo
 
@@ -74,7 +74,7 @@ def test_what_the_units_say_differently_is_all_there() -> None:
     assert [str(each) for each in found.defaults] == ["True", "1"]
     assert found.reads == ("src/detector.cpp:12", "src/main.cpp:3")
     assert found.exposed == (
-        Exposed("src/main.cpp:9", None),
-        Exposed("src/detector.cpp:41", "capture"),
+        ExposedDetails("src/main.cpp:9", None),
+        ExposedDetails("src/detector.cpp:41", "capture"),
     )
     assert found.source_text == "if (coverage > min_coverage_limit_)"

@@ -12,8 +12,8 @@ from pytpc.workspace.doctor.finding import Finding, Severity, by_severity, error
 from pytpc.workspace.doctor.machine import (
     COLCON_EXTENSIONS,
     UNSUITED,
+    InstalledProgram,
     Machine,
-    Program,
     ccache_settings,
     check_machine,
     look_at_machine,
@@ -23,7 +23,9 @@ from pytpc.workspace.doctor.machine import (
 MIB = 1024 * 1024
 SOUND = Machine(
     programs={
-        name: Program(Path("/usr/bin", name), (3, 25, 1) if name == "cmake" else (19, 1, 7))
+        name: InstalledProgram(
+            Path("/usr/bin", name), (3, 25, 1) if name == "cmake" else (19, 1, 7)
+        )
         for name in BUILD_TOOLS
     },
     python=Path("/usr/bin/python3"),
@@ -36,12 +38,12 @@ SOUND = Machine(
 )
 
 
-def without(name: str) -> dict[str, Program]:
+def without(name: str) -> dict[str, InstalledProgram]:
     return {other: program for other, program in SOUND.programs.items() if other != name}
 
 
-def with_version(name: str, *version: int) -> dict[str, Program]:
-    return {**SOUND.programs, name: Program(Path("/usr/bin", name), version)}
+def with_version(name: str, *version: int) -> dict[str, InstalledProgram]:
+    return {**SOUND.programs, name: InstalledProgram(Path("/usr/bin", name), version)}
 
 
 def env(**variables: str) -> Machine:

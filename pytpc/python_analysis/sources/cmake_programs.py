@@ -16,7 +16,7 @@ from itertools import islice
 from pathlib import Path
 
 from pytpc.base.errors import InputError
-from pytpc.workspace.cmake_syntax import Argument, Command, commands, find_fault
+from pytpc.workspace.cmake_syntax import CmakeArgument, Command, commands, find_fault
 
 _VARIABLE = re.compile(r"\$\{([^${}]*)\}")
 _ENDING = frozenset(
@@ -134,7 +134,7 @@ class _Reader:
     def _words(self, command: Command) -> list[str]:
         return [word for argument in command.arguments for word in self._expanded(argument)]
 
-    def _expanded(self, argument: Argument) -> list[str]:
+    def _expanded(self, argument: CmakeArgument) -> list[str]:
         """The values of an argument: several where a variable is a list."""
         texts = [argument.text]
         for _ in range(_DEEPEST):

@@ -79,7 +79,7 @@ print(json.dumps({"modules": modules, "colcon": extensions}))
 
 
 @dataclass(frozen=True, slots=True)
-class Program:
+class InstalledProgram:
     """A program on PATH and its version as numbers; none where it says none."""
 
     path: Path
@@ -97,7 +97,7 @@ class Machine:
     build needs; spaces are in bytes; ``setup`` is what installs TPC's own half.
     """
 
-    programs: Mapping[str, Program] = field(default_factory=dict)
+    programs: Mapping[str, InstalledProgram] = field(default_factory=dict)
     python: Path | None = None
     modules: Mapping[str, str] = field(default_factory=dict)
     extensions: frozenset[str] = frozenset()
@@ -121,7 +121,7 @@ def look_at_machine(folder: Path) -> Machine:
         folder: the free space of its disk is checked; it need not exist.
     """
     programs = {
-        name: Program(Path(path), version_of(output_of([path, "--version"])))
+        name: InstalledProgram(Path(path), version_of(output_of([path, "--version"])))
         for name in BUILD_TOOLS
         if (path := shutil.which(name, path=search_path())) is not None
     }
