@@ -7,6 +7,7 @@
 #include "control/IfStatements.h"
 #include "control/Throws.h"
 #include "instrument/InstrumentBranches.h"
+#include "instrument/InstrumentReads.h"
 #include "memory/AccessIndex.h"
 #include "memory/Aliases.h"
 #include "memory/LocationTypes.h"
@@ -23,6 +24,7 @@
 #include "support/Guard.h"
 
 #include "llvm/IR/Module.h"
+#include "llvm/IR/PassTimingInfo.h"
 #include "llvm/Support/CommandLine.h"
 #include "llvm/Support/WithColor.h"
 
@@ -54,10 +56,11 @@ void registerAnalyses(ModuleAnalysisManager &AM) {
 struct Findings {
   UnitInfo Unit;
   std::vector<Report> Reports;
+  std::vector<NamedRead> Names;
   unsigned NotInstrumented = 0;
   std::string Failure;
-  bool IsChanged =
-      false; ///< the functions that reports need were copied or inlined
+  /// The functions that reports need were copied or inlined.
+  bool IsChanged = false;
 };
 
 namespace {
@@ -65,11 +68,15 @@ namespace {
 /// used: it caches results for the user's module, which is not analysed, and it
 /// outlives the copies.
 struct OwnAnalyses {
+  PassInstrumentationCallbacks Callbacks;
+  TimePassesHandler Times; ///< for `-time-passes`
   ModuleAnalysisManager AM;
   OwnAnalyses(const Options &Opts, const RuleTables &Rules) {
+    Times.registerCallbacks(Callbacks);
     AM.registerPass([&] { return OptionsAnalysis(Opts); });
     AM.registerPass([&] { return RuleTableAnalysis(Rules); });
-    PassBuilder().registerModuleAnalyses(AM);
+    PassBuilder(nullptr, PipelineTuningOptions(), std::nullopt, &Callbacks)
+        .registerModuleAnalyses(AM);
     registerAnalyses(AM);
   }
 };
@@ -112,6 +119,9 @@ static void planReports(AnalysedModule &Analysed, ModuleAnalysisManager &AM,
   if (Opts.Constants)
     for (const Comparison &C : R.Constants)
       Plan(C, /*IsUnsigned=*/false);
+  for (const ParameterRead &Read : Reads)
+    if (std::optional<NamedRead> Name = planName(Read, Analysed))
+      Out.Names.push_back(std::move(*Name));
 }
 
 static std::vector<std::string> findNamedHelpers(Module &M, const Options &Opts,
@@ -177,9 +187,14 @@ PreservedAnalyses LinkUnitPass::run(Module &M, ModuleAnalysisManager &AM) {
   if (!Opts.Analyse)
     return PreservedAnalyses::all();
   Findings F = analyseSafely(M, AM, Opts);
-  if (F.Failure.empty() && Opts.Instrument)
-    if (std::string Why = insertReports(M, F.Reports); !Why.empty())
-      F.Failure = std::move(Why);
+  if (F.Failure.empty() && Opts.Instrument) {
+    // The module is verified with both.
+    SmallVector<Instruction *, 0> Names = insertNames(M, F.Names);
+    F.Failure = insertReports(M, F.Reports);
+    if (!F.Failure.empty())
+      for (Instruction *I : reverse(Names))
+        I->eraseFromParent();
+  }
   if (!F.Failure.empty()) {
     warn(Opts, F.Failure + (F.IsChanged ? "; this link unit gets no reports"
                                         : "; this link unit is not changed"));

@@ -54,7 +54,8 @@ private:
 } // namespace
 
 static constexpr StringLiteral ReadKeys[] = {"name", "value", "default",
-                                             "handle"};
+                                             "handle", "resolve"};
+static constexpr StringLiteral ConfigKeys[] = {"handle", "resolve"};
 static constexpr StringLiteral ReadRequired[] = {"name", "value"};
 static constexpr StringLiteral ExposingKeys[] = {"topic"};
 static constexpr StringLiteral TopicKeys[] = {"name"};
@@ -70,15 +71,14 @@ static const Section Sections[] = {
     {"handles", Rule::Naming, NameKeys, NameRequired},
     {"names", Rule::Naming, NameKeys, NameRequired},
     {"accessors", Rule::Accessor, {}, {}},
-    {"configs", Rule::Config, {}, {}},
+    {"configs", Rule::Config, ConfigKeys, {}},
     {"text", Rule::Text, TextKeys, TextKeys},
     {"held", Rule::Held, HeldKeys, TextKeys},
 };
 
 static constexpr NameList NameLists[] = {
-    {"opaque", &RuleFile::Opaque},
-    {"kept", &RuleFile::Kept},
-    {"counting", &RuleFile::Counting},
+    {"opaque", &RuleFile::Opaque},           {"kept", &RuleFile::Kept},
+    {"counting", &RuleFile::Counting},       {"silent", &RuleFile::Silent},
     {"transparent", &RuleFile::Transparent},
 };
 
@@ -161,6 +161,8 @@ Error Reader::field(StringRef Key, const json::Value &V, StringRef Place,
     return truth(V, Place, R.Method);
   if (Key == "handle")
     return truth(V, Place, R.Handle);
+  if (Key == "resolve")
+    return text(V, Place, R.Resolve);
   if (Key == "absolute")
     return truth(V, Place, R.Absolute);
   if (Key == "arity")

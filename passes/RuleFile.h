@@ -13,7 +13,8 @@ namespace tpc {
 
 struct RuleFile {
   std::vector<Rule> Rows;
-  std::vector<std::string> Opaque, Kept, Counting; ///< prefixes of names
+  std::vector<std::string> Opaque, Kept, Counting,
+      Silent; ///< prefixes of names
   std::vector<std::string> ContainerClasses, ReadingMethods, Transparent;
 };
 

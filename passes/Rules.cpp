@@ -49,6 +49,7 @@ Expected<Rules> Rules::load(const Options &Opts) {
     append_range(R.OpaquePrefixes, File->Opaque);
     append_range(R.KeptPrefixes, File->Kept);
     append_range(R.CountingPrefixes, File->Counting);
+    append_range(R.SilentPrefixes, File->Silent);
     R.ContainerClasses.insert(File->ContainerClasses.begin(),
                               File->ContainerClasses.end());
     R.Transparent.insert(File->Transparent.begin(), File->Transparent.end());
@@ -81,6 +82,10 @@ bool Rules::isOpaque(StringRef Name) const {
 
 bool Rules::isCounting(StringRef Name) const {
   return beginsWithOneOf(Name, CountingPrefixes);
+}
+
+bool Rules::isSilent(StringRef Name) const {
+  return beginsWithOneOf(Name, SilentPrefixes);
 }
 
 RuleTables RuleTableAnalysis::run(Module &M, ModuleAnalysisManager &AM) {
@@ -197,7 +202,8 @@ const RuleMatches::Inlined &RuleMatches::inlined(const DISubprogram &F) const {
   auto [It, New] = InlinedFunctions.try_emplace(&F);
   if (New) {
     std::string Name = qualifiedName(F.getLinkageName());
-    It->second = {Tables->isTransparent(Name), Tables->isCounting(Name)};
+    It->second = {Tables->isTransparent(Name), Tables->isCounting(Name),
+                  Tables->isSilent(Name)};
   }
   return It->second;
 }

@@ -59,13 +59,16 @@ struct Rule {
   /// The types of the parameters without const, & and template arguments; `*`
   /// matches any type.
   std::vector<std::string> Types;
-  std::optional<unsigned>
-      Name; ///< argument that holds the name of the parameter or topic
+  /// The argument that holds the name of the parameter or topic.
+  std::optional<unsigned> Name;
   std::optional<unsigned> Value; ///< argument that the value is written to;
                                  ///< unset: the value is the result
   std::optional<unsigned> Default;
   /// The namespace of `this`, a node handle, is put before the name.
   bool Handle = false;
+  /// Which handle resolves the name in the running node: `this`, `global`, or
+  /// a field of `this`; empty if none is known.
+  std::string Resolve;
   std::vector<Part> Parts; ///< joined with slashes
   /// The name is looked up as it is: no namespace is put before it.
   bool Absolute = false;
@@ -118,11 +121,16 @@ public:
   /// object.
   bool isCounting(llvm::StringRef Name) const;
 
+  /// True if what a function of this qualified name publishes is about the
+  /// library that it belongs to, not about the robot.
+  bool isSilent(llvm::StringRef Name) const;
+
 private:
   const Rule *rowOf(const llvm::Function &F, llvm::StringRef Name) const;
 
   llvm::StringMap<std::vector<Rule>> ByName;
-  std::vector<std::string> OpaquePrefixes, KeptPrefixes, CountingPrefixes;
+  std::vector<std::string> OpaquePrefixes, KeptPrefixes, CountingPrefixes,
+      SilentPrefixes;
   llvm::StringSet<> ContainerClasses, ReadingMethods, Transparent;
   /// Cached by mangled name, so that each name is demangled once.
   mutable llvm::StringMap<Match> Known;
@@ -179,6 +187,8 @@ public:
   bool isCounting(const llvm::DISubprogram &F) const {
     return inlined(F).Counting;
   }
+  /// See Rules::isSilent; works for inlined functions too.
+  bool isSilent(const llvm::DISubprogram &F) const { return inlined(F).Silent; }
   /// The container method that \p Call calls, or null.
   const ContainerMethod *container(const llvm::CallBase &Call) const;
   /// True if \p F is never inlined, however small it is.
@@ -193,7 +203,7 @@ private:
   /// What the tables say about a function that may have been inlined
   /// everywhere.
   struct Inlined {
-    bool Transparent = false, Counting = false;
+    bool Transparent = false, Counting = false, Silent = false;
   };
   const Inlined &inlined(const llvm::DISubprogram &F) const;
 

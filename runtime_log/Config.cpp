@@ -13,8 +13,9 @@ const char *const ConfigNames[8] = {"sink",       "policy",      "period",
                                     "site_cap",   "process_cap", "folder",
                                     "file_limit", "file_reserve"};
 
-static constexpr const char *SinkNames[] = {"rosout", "topic", "file", "off"};
-static constexpr const char *PolicyNames[] = {"every", "edges"};
+static constexpr const char *SinkNames[] = {"auto", "rosout", "topic", "file",
+                                            "off"};
+static constexpr const char *PolicyNames[] = {"every", "edges", "light"};
 
 const char *text(SinkKind K) { return SinkNames[static_cast<int>(K)]; }
 const char *text(Policy P) { return PolicyNames[static_cast<int>(P)]; }
@@ -25,6 +26,28 @@ bool Config::operator==(const Config &Other) const {
          ProcessCap == Other.ProcessCap && Folder == Other.Folder &&
          FileLimitMiB == Other.FileLimitMiB &&
          FileReserveMiB == Other.FileReserveMiB;
+}
+
+Config Config::filledIn() const {
+  // `light` sends about a kilobyte a second for each ten comparisons, and
+  // readers spread a summary over its period.
+  struct Defaults {
+    uint64_t PeriodNs, SiteCap, ProcessCap;
+  };
+  static constexpr Defaults OfLight{1'000'000'000, 10, 50};
+  static constexpr Defaults OfOthers{100'000'000, 0, 0};
+  Config C = *this;
+  if (C.Policy == Policy::OfSink)
+    C.Policy = C.Sink == SinkKind::Auto ? Policy::Light : Policy::Every;
+  const Defaults &D = C.Policy == Policy::Light ? OfLight : OfOthers;
+  auto Fill = [](uint64_t &To, uint64_t Default) {
+    if (To == Usual)
+      To = Default;
+  };
+  Fill(C.PeriodNs, D.PeriodNs);
+  Fill(C.SiteCap, D.SiteCap);
+  Fill(C.ProcessCap, D.ProcessCap);
+  return C;
 }
 
 template <typename Enum, size_t N>
@@ -69,7 +92,7 @@ bool parse(Config &C, const std::string &Name, const std::string &Value,
     Why = "it must be a number of seconds from 0.001 to 3600";
     if (!read<double>(Seconds, Value, 1e-3, 3600))
       return false;
-    C.PeriodNs = static_cast<int64_t>(Seconds * 1e9);
+    C.PeriodNs = static_cast<uint64_t>(Seconds * 1e9);
     return true;
   }
   if (Name == "site_cap")
@@ -88,12 +111,17 @@ bool parse(Config &C, const std::string &Name, const std::string &Value,
   return false;
 }
 
+std::string variableOf(const std::string &Name) {
+  std::string Variable = "TPC_";
+  for (char C : Name)
+    Variable += static_cast<char>(std::toupper(C));
+  return Variable;
+}
+
 Config configOfEnvironment() {
   Config C;
   for (const char *Name : ConfigNames) {
-    std::string Variable = "TPC_";
-    for (const char *P = Name; *P; ++P)
-      Variable += static_cast<char>(std::toupper(*P));
+    const std::string Variable = variableOf(Name);
     const char *Value = std::getenv(Variable.c_str());
     std::string Why;
     if (Value && *Value && !parse(C, Name, Value, Why))

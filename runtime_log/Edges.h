@@ -28,9 +28,8 @@ constexpr double FarFrom = 1e-4;
 template <typename T> inline void setIf(bool Changes, T &To, T Value) {
   if (__builtin_expect(Changes, 0)) {
     To = Value;
-    asm volatile("" ::
-                     : "memory"); // forces a branch: the compiler must not
-                                  // store unconditionally
+    // Forces a branch: the compiler must not store unconditionally.
+    asm volatile("" ::: "memory");
   }
 }
 

@@ -56,7 +56,8 @@ enum Kind : uint32_t {
   SimulatedRecord = 4,
   SummaryRecord = 5,
   DroppedRecord = 6,
-  PolicyRecord = 7
+  PolicyRecord = 7,
+  NameRecord = 8
 };
 
 constexpr uint32_t ResultBit = 1U << 8;
@@ -71,7 +72,7 @@ constexpr uint32_t bits(bool Result, bool Outcome) {
 struct Record {
   uint32_t What;
   uint32_t Site;
-  int64_t Steady; ///< for a site: the length of its key
+  int64_t Steady; ///< for a site or a name: the length of its text
   union {
     double Numbers[2]; ///< for a report: compared value and threshold
     int64_t Integers[2];
@@ -93,7 +94,9 @@ struct Summary {
   double DiffMin, DiffMax, DiffSum, AbsSum, Low, High;
   uint64_t Flops;
   int64_t BeginRos, EndRos;
-  uint64_t Spare[2];
+  /// Of the policy `light`: how many evaluations were inspected, and whether
+  /// the counts are estimates.
+  uint64_t Seen, IsAbout;
 };
 static_assert(sizeof(Summary) == size_t(5) * RecordBytes);
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace tpc {
 
@@ -95,31 +96,57 @@ void LogFile::announce(Site &S) {
   announceLocked(S);
 }
 
-void LogFile::announceLocked(Site &S) {
-  if (S.WrittenTo.load(std::memory_order_relaxed) == this)
-    return;
-  size_t Length = std::min(S.Key.size(), LongestKey);
+/// Writes a record of kind \p What with \p Text, whose rest follows in as many
+/// blocks as it needs. SystemLock is held.
+bool LogFile::writeText(uint32_t What, uint32_t Site, const std::string &Text) {
+  size_t Length = std::min(Text.size(), LongestKey);
   size_t InHead = std::min(Length, sizeof(Record::Text));
   auto Blocks =
       static_cast<uint32_t>((Length - InHead + RecordBytes - 1) / RecordBytes);
   Record *R = systemRecords(1 + Blocks);
   if (!R)
-    return;
-  std::memcpy(R->Text, S.Key.data(), InHead);
-  std::memcpy(R + 1, S.Key.data() + InHead, Length - InHead);
-  R->Site = S.Number;
+    return false;
+  std::memcpy(R->Text, Text.data(), InHead);
+  std::memcpy(R + 1, Text.data() + InHead, Length - InHead);
+  R->Site = Site;
   R->Steady = static_cast<int64_t>(Length);
-  __atomic_store_n(&R->What, SiteRecord, __ATOMIC_RELEASE);
-  S.WrittenTo.store(this, std::memory_order_relaxed);
+  __atomic_store_n(&R->What, What, __ATOMIC_RELEASE);
+  return true;
+}
+
+void LogFile::announceLocked(Site &S) {
+  if (S.WrittenTo.load(std::memory_order_relaxed) != this &&
+      writeText(SiteRecord, S.Number, S.Key))
+    S.WrittenTo.store(this, std::memory_order_relaxed);
+}
+
+void LogFile::write(const ReadName &N) {
+  std::lock_guard<std::mutex> Guard(SystemLock);
+  writeText(NameRecord, 0, N.Text);
+}
+
+/// Steady and real time at one instant: of four readings the one that was
+/// interrupted least.
+static std::pair<int64_t, int64_t> bothClocks() {
+  int64_t Least = INT64_MAX, Steady = 0, Real = 0;
+  for (int Try = 0; Try != 4; ++Try) {
+    int64_t Before = Clock::now(), Now = Clock::real(), Took = Clock::now();
+    Took -= Before;
+    if (Took >= Least)
+      continue;
+    Least = Took;
+    Steady = Before + Took / 2;
+    Real = Now;
+  }
+  return {Steady, Real};
 }
 
 void LogFile::sync() {
   std::lock_guard<std::mutex> Guard(SystemLock);
   if (Record *R = systemRecords(1)) {
-    // Both clocks at one instant.
-    int64_t Before = Clock::now(), Real = Clock::real(), After = Clock::now();
+    auto [Steady, Real] = bothClocks();
     Space.header().Counter = Clock::usesCounter();
-    put(*R, SyncRecord, 0, Before + (After - Before) / 2, Real, rosNow());
+    put(*R, SyncRecord, 0, Steady, Real, rosNow());
   }
 }
 
@@ -127,7 +154,7 @@ void LogFile::writePolicy(const Config &C) {
   std::lock_guard<std::mutex> Guard(SystemLock);
   if (Record *R = systemRecords(1))
     put(*R, PolicyRecord, static_cast<uint32_t>(C.Policy), Clock::now(),
-        C.PeriodNs, INT64_C(0));
+        static_cast<int64_t>(C.PeriodNs), INT64_C(0));
 }
 
 void LogFile::write(const Dropped &D) {
@@ -161,6 +188,8 @@ void LogFile::write(const tpc::Summary &S) {
   Kept->Low = S.Low;
   Kept->High = S.High;
   Kept->Flops = S.Flops;
+  Kept->Seen = S.IsLight ? S.Seen : 0;
+  Kept->IsAbout = S.IsAbout;
   Kept->BeginRos = S.BeginRos;
   Kept->EndRos = S.EndRos;
   __atomic_store_n(&Kept->What, SummaryRecord | bits(S.Result, S.Outcome),

@@ -64,6 +64,7 @@ public:
 
   void write(const Summary &S);
   void write(const Dropped &D);
+  void write(const ReadName &N);
   void writePolicy(const Config &C);
   /// Records the two clocks against each other.
   void sync();
@@ -104,6 +105,7 @@ private:
   bool simulated(Thread &T, int64_t Now);
   void announce(Site &S);
   void announceLocked(Site &S);
+  bool writeText(uint32_t What, uint32_t Site, const std::string &Text);
   /// Space for \p Count consecutive records in a system chunk; null if there is
   /// none. SystemLock is held.
   layout::Record *systemRecords(uint32_t Count);

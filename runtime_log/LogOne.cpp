@@ -2,6 +2,7 @@
 #include "LogOne.h"
 
 #include "Edges.h"
+#include "Light.h"
 #include "Modes.h"
 #include "Runtime.h"
 
@@ -41,17 +42,6 @@ static void capped(Thread &T, Site &S, const Report &R) {
     emit(T, S, R, 0);
 }
 
-/// Marks the thread as inside a report: a signal handler, or code that is
-/// called from here, may report too.
-static void enter(Thread &T, uint32_t Inside) {
-  T.Inside.store(Inside + 1, std::memory_order_relaxed);
-  std::atomic_signal_fence(std::memory_order_seq_cst);
-}
-
-static void leave(Thread &T, uint32_t Inside) {
-  T.Inside.store(Inside, std::memory_order_release);
-}
-
 static void report(Thread &T, const Report &R) {
   if (NowMode.load(std::memory_order_acquire) == Mode::NotStarted)
     startRuntime();
@@ -61,6 +51,8 @@ static void report(Thread &T, const Report &R) {
     return;
   if (M == Mode::Edges)
     edges(T, *S, R);
+  else if (M == Mode::Light)
+    light(T, *S, R);
   else if (M == Mode::Capped)
     capped(T, *S, R);
   else
@@ -74,19 +66,13 @@ static void report(Thread &T, const Report &R) {
                                           bool Res) noexcept {
   try {
     Thread *T = ThisThread ? ThisThread : makeThread();
-    uint32_t Inside = T->Inside.load(std::memory_order_relaxed);
-    if (Inside & 1) {
-      T->Nested.fetch_add(1, std::memory_order_relaxed);
-      return;
-    }
-    enter(*T, Inside);
-    try {
+    ReportMark Mark(*T);
+    if (Mark)
       report(*T, {Key, Result, Cmp, Thresh, Res});
-    } catch (...) {
-      // A report that cannot be made is not worth a node.
-    }
-    leave(*T, Inside + 2);
+    else
+      T->Nested.fetch_add(1, std::memory_order_relaxed);
   } catch (...) {
+    // A report that cannot be made is not worth a node.
   }
 }
 
@@ -102,6 +88,18 @@ static void report(Thread &T, const Report &R) {
   pthread_setcancelstate(Cancelled, nullptr);
 }
 
+/// The evaluation if it needs no slow path; otherwise does nothing and returns
+/// false.
+static inline bool atOnce(Mode M, Thread &T, const Site &S, bool Result,
+                          double Cmp, double Thresh, bool Res) {
+  if (M == Mode::Light)
+    return isPassedOver(S, Result);
+  uint32_t Bits = layout::bits(Result, Res);
+  return M == Mode::Edges ? edgesAtOnce(T, S, Result, Bits, Cmp, Thresh)
+                          : NowFile.load(std::memory_order_acquire)
+                                ->writeAtOnce(T, S, Bits, Cmp, Thresh);
+}
+
 } // namespace tpc
 
 using namespace tpc;
@@ -111,21 +109,11 @@ void log_one(char *key, bool result, double cmp, double thresh, bool res) {
   if (M == Mode::Off)
     return;
   Thread *T = ThisThread;
-  if (T && (M == Mode::FileEvery || M == Mode::Edges)) {
-    uint32_t Inside = T->Inside.load(std::memory_order_relaxed);
-    if (!(Inside & 1)) {
-      enter(*T, Inside);
-      if (const Site *S = sites().known(key)) {
-        uint32_t Bits = layout::bits(result, res);
-        if (M == Mode::Edges ? edgesAtOnce(*T, *S, result, Bits, cmp, thresh)
-                             : NowFile.load(std::memory_order_acquire)
-                                   ->writeAtOnce(*T, *S, Bits, cmp, thresh)) {
-          leave(*T, Inside + 2);
-          return;
-        }
-      }
-      leave(*T, Inside);
-    }
+  if (T && (M == Mode::FileEvery || M == Mode::Edges || M == Mode::Light)) {
+    if (ReportMark Mark(*T); Mark)
+      if (const Site *S = sites().known(key);
+          S && atOnce(M, *T, *S, result, cmp, thresh, res))
+        return;
   }
   slowly(key, result, cmp, thresh, res);
 }

@@ -20,4 +20,15 @@
 __attribute__((visibility("default"))) void
 log_one(char *key, bool result, double cmp, double thresh, bool res);
 
+/// Reports the full name of a parameter, before it is read.
+///
+/// \param key    the key of the read, as in the static information
+/// \param handle the ros::NodeHandle that the name is relative to; null for the
+///               node itself
+/// \param name   a std::string, or with \p text a C string
+///
+/// Safe in any thread; never throws.
+__attribute__((visibility("default"))) void
+log_read(char *key, const void *handle, const void *name, bool text) noexcept;
+
 #endif // TPC_LOGONE_H

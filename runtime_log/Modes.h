@@ -21,6 +21,7 @@ enum class Mode : uint8_t {
   Off,
   FileEvery, ///< each evaluation, to the file
   Edges,
+  Light,
   SinkEvery, ///< each evaluation, to another sink
   Capped     ///< each evaluation that the caps allow
 };

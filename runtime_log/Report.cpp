@@ -71,6 +71,52 @@ std::string format(const Summary &S) {
   Text += seconds(S.BeginRos, 9);
   Text += ';';
   Text += seconds(S.EndRos, 9);
+  if (S.IsLight && S.Seen != S.Count)
+    append(Text, ",seen:", S.Seen);
+  if (S.IsAbout)
+    Text += ",about";
+  return Text;
+}
+
+/// Whether the numbers of \p S follow from the last evaluation and the counts.
+static bool isUniform(const Summary &S) {
+  return !S.Odd && S.HasOneThreshold && S.Least == S.Most;
+}
+
+std::string formatShort(const Summary &S) {
+  std::string Text = S.Key;
+  Text += ',';
+  Text += static_cast<char>('0' + S.Result + 2 * S.Outcome);
+  append(Text, ",", S.Compared);
+  append(Text, ",", S.Threshold);
+  append(Text, ",", S.Count);
+  if (S.Flops)
+    append(Text, ",f:", S.Flops);
+  uint64_t Usable = S.Count - S.Odd;
+  if (Usable && !isUniform(S)) {
+    auto Number = static_cast<double>(Usable);
+    if (S.HasOneThreshold) {
+      append(Text, ",c:", S.Least);
+      append(Text, ";", S.Most);
+    } else {
+      append(Text, ",d:", S.DiffMin);
+      append(Text, ";", S.DiffMax);
+      append(Text, ";", S.Low);
+      append(Text, ";", S.High);
+    }
+    append(Text, ",m:", S.DiffSum / Number);
+    if (S.DiffMin < 0 && S.DiffMax > 0)
+      append(Text, ";", S.AbsSum / Number);
+    // Otherwise it follows from the extremes.
+    if (S.Far != Usable)
+      append(Text, ",w:", S.Far);
+  }
+  if (S.Odd)
+    append(Text, ",o:", S.Odd);
+  if (S.Seen != S.Count)
+    append(Text, ",s:", S.Seen);
+  if (S.IsAbout)
+    Text += ",e";
   return Text;
 }
 

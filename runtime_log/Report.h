@@ -38,6 +38,17 @@ struct Summary {
   /// The span that contains all evaluations, in nanoseconds.
   int64_t BeginSteady, EndSteady;
   int64_t BeginRos, EndRos;
+
+  // Of the policy `light` only.
+  bool IsLight = false;
+  /// Count or Flops are estimates: several threads share the site, or its flops
+  /// were sampled.
+  bool IsAbout = false;
+  bool HasOneThreshold = false;
+  /// How many evaluations were inspected. Far, Odd, DiffSum and AbsSum are
+  /// scaled from those to Count, the extremes are of those.
+  uint64_t Seen = 0;
+  double Least = 0, Most = 0; ///< of the compared values
 };
 
 /// Why a report was dropped.
@@ -49,6 +60,11 @@ enum class DropReason : uint8_t {
 };
 
 const char *text(DropReason R);
+
+/// The full name of the parameter that a read has read: `KEY,NAME`.
+struct ReadName {
+  const std::string &Text;
+};
 
 /// The reports of a site that were dropped since the previous Dropped for it.
 /// Key is empty if the site is not known.
@@ -65,8 +81,12 @@ struct Dropped {
 std::string format(const Report &R);
 
 /// The same with `,count:N,flops:F,diff:MIN;MAX;MEAN,abs:MEAN,range:LOW;HIGH,
-/// far:N,odd:N,span:BEGIN;END` (docs/reference/formats.md).
+/// far:N,odd:N,span:BEGIN;END` and, if not all were inspected, `,seen:N`; if
+/// the counts are estimates, `,about` (docs/reference/formats.md).
 std::string format(const Summary &S);
+
+/// The same in one short line, without span (docs/reference/formats.md).
+std::string formatShort(const Summary &S);
 
 /// `KEY,count:N,flops:F,why:W`.
 std::string format(const Dropped &D);

@@ -2,16 +2,19 @@
 #include "Runtime.h"
 
 #include "Edges.h"
+#include "Light.h"
 #include "Modes.h"
+#include "ReadNames.h"
 #include "ros1/RosControl.h"
 
-#include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <pthread.h>
+#include <semaphore.h>
 #include <signal.h>
 #include <unistd.h>
+#include <utility>
 
 namespace tpc {
 
@@ -21,6 +24,9 @@ static constexpr int64_t Never = INT64_MAX;
 /// Until then the rate of the counter is not known well enough to use it.
 static constexpr int64_t FirstAdjustNs = 10'000'000;
 static constexpr int64_t Jump = 1'000'000;
+/// What `light` sends of summaries.
+static constexpr uint64_t SummariesOfSecond = 120;
+static constexpr int64_t LongestStretch = 16;
 
 //===----------------------------------------------------------------------===//
 // The state that log_one reads
@@ -48,6 +54,11 @@ public:
     if (LogFile *F = NowFile.load())
       F->write(D);
   }
+  void take(const ReadName &N) override {
+    if (LogFile *F = NowFile.load())
+      F->write(N);
+  }
+  bool forgets() const override { return false; }
 };
 
 class NoSink final : public Sink {
@@ -80,34 +91,46 @@ private:
 
   static Sink &sinkOf(SinkKind K);
   bool choose(const Config &C);
-  bool needsFile(const Config &C);
+  bool isSummarised() const;
+  void flush(bool IsEnd);
   void startHelper();
   void help();
   int64_t runDue(int64_t Now);
   void eachSecond();
   void accountForDrops();
 
-  std::mutex Changing; ///< for everything that follows
-  Config Held;
-  bool IsStarted = false;
+  /// Taken before Changing. The threads whose first reports come while the
+  /// runtime starts wait for this one only: the helper thread waits, with
+  /// Changing locked, for threads that are inside a report.
+  std::mutex Starting;
+  std::mutex Changing;      ///< for everything that follows
+  Config Held;              ///< as it was set
+  Config Filled;            ///< what holds
+  bool IsStarted = false;   ///< changes while both are locked
   bool HasSettings = false; ///< Held was read or set, perhaps before a fork
   bool HelperRuns = false;
   pthread_t Helper{};
 
-  std::mutex Waiting; ///< for the next three
-  std::condition_variable Wake;
-  bool IsAwake = false;
-  bool IsEnding = false;
+  // No lock: roscpp's threads wake the helper, and a signal handler may have
+  // interrupted a thread that does, and now wait for roscpp's threads.
+  sem_t Wake; ///< posted once IsAwake or IsEnding is set
+  std::atomic<bool> IsAwake{false};
+  std::atomic<bool> IsEnding{false};
 
   // Used by the helper only.
   int64_t NextRos = 0, NextPoll = 0, NextPeriod = 0, NextSecond = 0;
   int64_t RealOffset = 0;
+  /// Periods of `light` are so many times longer, because many sites are
+  /// evaluated.
+  int64_t Stretch = 1;
+  bool HasToldOfCaps = false;
   std::atomic<uint64_t> DroppedInAll{0};
 };
 
 Runtime::Runtime() {
   // Never destroyed, like this object: threads report until the process ends.
   TheSites = new Sites;
+  sem_init(&Wake, 0, 0);
   pthread_atfork([] { of().beforeFork(); }, [] { of().afterFork(false); },
                  [] { of().afterFork(true); });
   // Handlers run in the reverse order of their registration, so this one runs
@@ -119,6 +142,8 @@ Sink &Runtime::sinkOf(SinkKind K) {
   static auto *File = new FileSink;
   static auto *None = new NoSink;
   switch (K) {
+  case SinkKind::Auto:
+    return autoSink();
   case SinkKind::Rosout:
     return rosoutSink();
   case SinkKind::Topic:
@@ -132,9 +157,10 @@ Sink &Runtime::sinkOf(SinkKind K) {
 }
 
 void Runtime::start() {
-  std::lock_guard<std::mutex> Guard(Changing);
+  std::lock_guard<std::mutex> GuardOfStart(Starting);
   if (IsStarted)
     return;
+  std::lock_guard<std::mutex> Guard(Changing);
   TimeIsSimulated = rosTimeIsSimulated();
   prepareEdges();
   // A forked child keeps the settings of its parent, and its clock.
@@ -155,16 +181,10 @@ void Runtime::start() {
   startHelper();
 }
 
-bool Runtime::needsFile(const Config &C) {
-  LogFile *F = NowFile.load();
-  return !F || F->isStopped() || C.Folder != Held.Folder ||
-         C.FileLimitMiB != Held.FileLimitMiB;
-}
-
 /// Makes log_one follow \p C; false if its file cannot be created.
 bool Runtime::choose(const Config &C) {
   if (C.Sink == SinkKind::File) {
-    if (needsFile(C)) {
+    if (LogFile *F = NowFile.load(); !F || F->isStopped()) {
       std::string Why;
       LogFile *File = LogFile::open(C, Why);
       if (!File) {
@@ -173,22 +193,30 @@ bool Runtime::choose(const Config &C) {
       }
       if (LogFile *Old = NowFile.exchange(File))
         Old->close();
+      ReadNames::all().startAgain();
     }
-    NowFile.load()->writePolicy(C);
+    NowFile.load()->writePolicy(C.filledIn());
   }
-  SiteCap = C.SiteCap;
-  ProcessCap = C.ProcessCap;
+  Filled = C.filledIn();
+  SiteCap = Filled.SiteCap;
+  ProcessCap = Filled.ProcessCap;
   ReportsToFile = C.Sink == SinkKind::File;
   SlotsHome = ReportsToFile ? NowFile.load() : nullptr;
   Sink *Old = NowSink.exchange(&sinkOf(C.Sink));
-  bool IsCapped = C.SiteCap || C.ProcessCap;
-  NowMode = C.Sink == SinkKind::Off     ? Mode::Off
-            : C.Policy == Policy::Edges ? Mode::Edges
+  bool IsCapped = SiteCap || ProcessCap;
+  bool IsLight = Filled.Policy == Policy::Light && C.Sink != SinkKind::Off;
+  if (IsLight)
+    beginLight();
+  NowMode = C.Sink == SinkKind::Off          ? Mode::Off
+            : IsLight                        ? Mode::Light
+            : Filled.Policy == Policy::Edges ? Mode::Edges
             : C.Sink == SinkKind::File
                 ? (IsCapped ? Mode::Capped : Mode::FileEvery)
             : IsCapped ? Mode::Capped
                        : Mode::SinkEvery;
-  tpc_reporting = C.Sink == SinkKind::Off ? 0 : 1;
+  tpc_reporting = C.Sink == SinkKind::Off ? ReportNone
+                  : IsLight               ? ReportFew
+                                          : ReportAll;
   if (Old && Old != NowSink.load())
     Old->end();
   return true;
@@ -199,9 +227,8 @@ bool Runtime::apply(const Config &C) {
   std::lock_guard<std::mutex> Guard(Changing);
   if (C == Held)
     return true;
-  // What `edges` has kept so far goes to the old sink.
-  if (Held.Policy == Policy::Edges && Held.Sink != SinkKind::Off)
-    flushEdges(*NowSink.load(), /*All=*/true);
+  // What the policy has kept so far goes to the old sink.
+  flush(/*IsEnd=*/true);
   if (!choose(C))
     return false;
   Held = C;
@@ -217,14 +244,14 @@ Config Runtime::current() {
 std::string Runtime::status() {
   std::lock_guard<std::mutex> Guard(Changing);
   std::string Text =
-      std::string("sink=") + text(Held.Sink) + " policy=" + text(Held.Policy);
-  if (Held.Policy == Policy::Edges)
+      std::string("sink=") + text(Held.Sink) + " policy=" + text(Filled.Policy);
+  if (Filled.Policy != Policy::Every)
     Text +=
-        " period=" + std::to_string(static_cast<double>(Held.PeriodNs) / 1e9);
-  if (Held.SiteCap)
-    Text += " site_cap=" + std::to_string(Held.SiteCap);
-  if (Held.ProcessCap)
-    Text += " process_cap=" + std::to_string(Held.ProcessCap);
+        " period=" + std::to_string(static_cast<double>(Filled.PeriodNs) / 1e9);
+  if (Filled.SiteCap)
+    Text += " site_cap=" + std::to_string(Filled.SiteCap);
+  if (Filled.ProcessCap)
+    Text += " process_cap=" + std::to_string(Filled.ProcessCap);
   Text += " sites=" + std::to_string(sites().size()) +
           " dropped=" + std::to_string(DroppedInAll.load());
   if (LogFile *F = NowFile.load(); F && Held.Sink == SinkKind::File)
@@ -257,11 +284,8 @@ void Runtime::startHelper() {
 }
 
 void Runtime::wake() {
-  {
-    std::lock_guard<std::mutex> Guard(Waiting);
-    IsAwake = true;
-  }
-  Wake.notify_one();
+  if (!IsAwake.exchange(true))
+    sem_post(&Wake);
 }
 
 void Runtime::help() {
@@ -269,23 +293,17 @@ void Runtime::help() {
   Clock::adjust();
   int64_t Next = Clock::steady() + FirstAdjustNs;
   for (;;) {
-    {
-      std::unique_lock<std::mutex> Guard(Waiting);
-      auto Done = [this] { return IsAwake || IsEnding; };
-      if (Next == Never)
-        Wake.wait(Guard, Done);
-      else
-        // Steady time: setting the wall clock must not stop the periods.
-        Wake.wait_until(Guard,
-                        std::chrono::steady_clock::time_point(
-                            std::chrono::nanoseconds(Next)),
-                        Done);
-      if (IsEnding)
-        return;
-      if (IsAwake)
-        NextRos = 0;
-      IsAwake = false;
+    if (Next == Never) {
+      sem_wait(&Wake);
+    } else {
+      // Steady time: setting the wall clock must not stop the periods.
+      timespec Until{Next / Second, Next % Second};
+      sem_clockwait(&Wake, CLOCK_MONOTONIC, &Until);
     }
+    if (IsEnding)
+      return;
+    if (IsAwake.exchange(false))
+      NextRos = 0;
     Next = runDue(Clock::steady());
   }
 }
@@ -302,7 +320,7 @@ int64_t Runtime::runDue(int64_t Now) {
   TimeIsSimulated = rosTimeIsSimulated();
   std::lock_guard<std::mutex> Guard(Changing);
   LogFile *File = Held.Sink == SinkKind::File ? NowFile.load() : nullptr;
-  bool IsEdges = Held.Policy == Policy::Edges && Held.Sink != SinkKind::Off;
+  bool HasPeriods = isSummarised();
   if (File) {
     File->lookAhead();
     File->setNode(rosNodeName());
@@ -311,11 +329,12 @@ int64_t Runtime::runDue(int64_t Now) {
       NextSecond = Now;
     RealOffset = Offset;
   }
-  if (IsEdges && Now >= NextPeriod) {
-    flushEdges(*NowSink.load(), /*All=*/false);
-    NextPeriod += Held.PeriodNs;
+  if (HasPeriods && Now >= NextPeriod) {
+    flush(/*IsEnd=*/false);
+    int64_t Period = static_cast<int64_t>(Filled.PeriodNs) * Stretch;
+    NextPeriod += Period;
     if (NextPeriod <= Now)
-      NextPeriod = Now + Held.PeriodNs;
+      NextPeriod = Now + Period;
   }
   Sink &S = *NowSink.load();
   bool IsPolled = S.isPolled();
@@ -323,13 +342,14 @@ int64_t Runtime::runDue(int64_t Now) {
     S.poll();
     NextPoll = Now + PollNs;
   }
-  bool HasSeconds = File || IsEdges || SiteCap || ProcessCap;
+  bool HasSeconds = File || HasPeriods || SiteCap || ProcessCap ||
+                    (Held.Sink != SinkKind::Off && ReadNames::all().any());
   if (HasSeconds && Now >= NextSecond) {
     eachSecond();
     NextSecond = Now + Second;
   }
   int64_t Next = NextRos;
-  if (IsEdges)
+  if (HasPeriods)
     Next = std::min(Next, NextPeriod);
   if (IsPolled)
     Next = std::min(Next, NextPoll);
@@ -338,11 +358,34 @@ int64_t Runtime::runDue(int64_t Now) {
   return Next;
 }
 
+/// Whether the policy keeps evaluations for a period.
+bool Runtime::isSummarised() const {
+  return Held.Sink != SinkKind::Off && Filled.Policy != Policy::Every;
+}
+
+void Runtime::flush(bool IsEnd) {
+  if (!isSummarised())
+    return;
+  Sink &S = *NowSink.load();
+  if (Filled.Policy == Policy::Edges)
+    return flushEdges(S, /*All=*/IsEnd);
+  uint64_t Summaries = flushLight(S, IsEnd);
+  if (Held.Sink == SinkKind::File)
+    return;
+  // About 100 bytes each.
+  uint64_t Most = SummariesOfSecond * Filled.PeriodNs * Stretch / Second;
+  if (Summaries > Most && Stretch < LongestStretch)
+    Stretch *= 2;
+  else if (Summaries < Most / 4 && Stretch > 1)
+    Stretch /= 2;
+}
+
 void Runtime::eachSecond() {
   Clock::adjust();
   if (Held.Sink == SinkKind::File)
     NowFile.load()->sync();
   accountForDrops();
+  ReadNames::all().give(*NowSink.load(), Clock::steady());
 }
 
 void Runtime::accountForDrops() {
@@ -354,6 +397,15 @@ void Runtime::accountForDrops() {
       return;
     DroppedInAll += Count;
     S.take(Dropped{Key, Number, Count, Flops, Why});
+    // Nobody has asked a program without ROS for reports.
+    bool IsAsked = Held.Sink != SinkKind::Auto || *rosNodeName();
+    if (Filled.Policy == Policy::Light && *Key && IsAsked &&
+        !std::exchange(HasToldOfCaps, true))
+      warn(std::string("comparison ") + Key + " changes more often than " +
+           (Why == DropReason::SiteCap
+                ? std::to_string(SiteCap) + " times a second (TPC_SITE_CAP)"
+                : "TPC_PROCESS_CAP allows") +
+           ": further changes are only counted, here and elsewhere");
   };
   for (uint32_t Number = 1; Number <= sites().size(); ++Number) {
     Site &At = sites()[Number];
@@ -368,13 +420,16 @@ void Runtime::accountForDrops() {
 }
 
 void Runtime::end() {
-  {
-    std::lock_guard<std::mutex> Guard(Waiting);
-    if (IsEnding)
-      return;
-    IsEnding = true;
+  if (IsEnding.exchange(true))
+    return;
+  sem_post(&Wake);
+  if (ThisThread && (ThisThread->Inside.load() & 1)) {
+    // A signal handler has interrupted a report of this thread to end the
+    // process. The report may hold any lock. The file is complete without its
+    // end.
+    rosEnd();
+    return;
   }
-  Wake.notify_one();
   if (HelperRuns) {
     // It may be waiting for a ROS master that no longer answers.
     timespec Until;
@@ -391,10 +446,11 @@ void Runtime::end() {
   if (!IsStarted)
     return;
   Sink &S = *NowSink.load();
-  if (Held.Policy == Policy::Edges && Held.Sink != SinkKind::Off)
-    flushEdges(S, /*All=*/true);
-  if (Held.Sink != SinkKind::Off)
+  flush(/*IsEnd=*/true);
+  if (Held.Sink != SinkKind::Off) {
     accountForDrops();
+    ReadNames::all().give(S, Clock::steady());
+  }
   S.end();
   rosEnd();
   if (LogFile *F = NowFile.load())
@@ -406,24 +462,28 @@ void Runtime::end() {
 //===----------------------------------------------------------------------===//
 
 void Runtime::beforeFork() {
+  Starting.lock();
   Changing.lock();
-  Waiting.lock();
   sites().lock();
+  ReadNames::all().lock();
   lockThreads();
 }
 
 void Runtime::afterFork(bool IsChild) {
   unlockThreads();
+  ReadNames::all().unlock();
   sites().unlock();
-  Waiting.unlock();
   Changing.unlock();
+  Starting.unlock();
   if (!IsChild)
     return;
   // Only this thread is left. The file belongs to the parent; the first report
   // creates a new one, and a new helper.
-  new (&Wake) std::condition_variable;
+  sem_init(&Wake, 0, 0);
   threadsAfterFork();
+  ReadNames::all().startAgain();
   sites().afterFork();
+  lightAfterFork();
   for (uint32_t Number = 1; Number <= sites().size(); ++Number)
     sites()[Number].Last = -1;
   NowFile = nullptr;

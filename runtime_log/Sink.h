@@ -21,6 +21,12 @@ public:
   virtual void take(const Summary &S) = 0;
   virtual void take(const Dropped &D) = 0;
 
+  /// From the helper thread, or from the thread that ends the process.
+  virtual void take(const ReadName &) {}
+
+  /// Whether a reader that comes later misses what was taken before.
+  virtual bool forgets() const { return true; }
+
   /// From the helper thread, about every 20 ms while this is the chosen sink.
   virtual void poll() {}
 
@@ -35,12 +41,14 @@ public:
   virtual std::string status() const { return ""; }
 };
 
-/// The sink of the thesis: one ROS_INFO line per report, which appears on
-/// /rosout.
+/// The sink of the thesis: one message on /rosout for each report.
 Sink &rosoutSink();
 
 /// Sends batches on /threshold_information.
 Sink &topicSink();
+
+/// Sends batches on /rosout. Without ROS, reports go nowhere.
+Sink &autoSink();
 
 } // namespace tpc
 

@@ -13,6 +13,7 @@
 namespace tpc {
 
 class LogFile;
+struct LightSite;
 
 /// Counts the reports of the current second against a cap.
 class Meter {
@@ -57,6 +58,12 @@ struct Site {
   std::mutex Lock; ///< held while Last changes
   Meter Used;
   DropCount OverSiteCap, OverProcessCap;
+  /// What a store of reports gave up to make space, and the last result that it
+  /// gave up. The store's lock is held while they change.
+  DropCount Evicted;
+  int8_t LastEvicted = -1;
+  /// What the policy `light` knows about it.
+  std::atomic<LightSite *> Light{nullptr};
 };
 
 /// Finds sites by the address of the key, or by its text if the address is new.

@@ -37,12 +37,38 @@ struct Thread {
   /// Indexed by the number of the site; used by `edges`.
   SlotPair **Pairs = nullptr;
   uint32_t PairCount = 0;
-  const LogFile *PairsHome =
-      nullptr; ///< the file that contains them; null: memory
+  /// The file that contains them; null: memory.
+  const LogFile *PairsHome = nullptr;
   uint64_t Tid = 0;
   /// The slots in use, of even and of odd periods.
   std::vector<layout::Slot *> Touched[2];
   std::mutex Lock; ///< for Touched
+};
+
+/// Marks \p T as inside a report, unless it is already: a signal handler, or
+/// code that is called from a report, may report too.
+class ReportMark {
+public:
+  explicit ReportMark(Thread &T)
+      : T(T), Before(T.Inside.load(std::memory_order_relaxed)) {
+    if (!*this)
+      return;
+    T.Inside.store(Before + 1, std::memory_order_relaxed);
+    std::atomic_signal_fence(std::memory_order_seq_cst);
+  }
+  ~ReportMark() {
+    if (*this)
+      T.Inside.store(Before + 2, std::memory_order_release);
+  }
+  ReportMark(const ReportMark &) = delete;
+  ReportMark &operator=(const ReportMark &) = delete;
+
+  /// Whether the thread was not inside a report before.
+  explicit operator bool() const { return !(Before & 1); }
+
+private:
+  Thread &T;
+  const uint32_t Before;
 };
 
 /// The calling thread; creates it at its first report. Null while the thread is

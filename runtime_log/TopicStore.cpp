@@ -1,97 +1,127 @@
 //===- TopicStore.cpp -----------------------------------------------------===//
 #include "TopicStore.h"
 
+#include "Modes.h"
+
 #include <cstring>
-#include <string_view>
+#include <sys/mman.h>
 
 namespace tpc {
 
-static constexpr size_t MostBlocks = 16;
 static constexpr uint32_t BlockEntries = 4096;
-/// A block ends here even with few entries, so that long keys cannot make it
-/// large.
 static constexpr size_t BlockBytes = size_t(512) * 1024;
 
-/// Stands before each entry in a block. The key with its NUL follows and, for a
-/// summary, the rest of its text.
+/// Stands before each entry in a block; the text of a summary follows.
 namespace {
 struct Head {
   int64_t Ns;
   double Compared, Threshold;
+  Site *Of;
   uint64_t Evaluations; ///< for a summary
-  uint32_t Length;      ///< of everything that follows
-  bool Guessed, IsReport, Result, Outcome;
+  uint32_t Length;      ///< of the text
+  bool Guessed;
+  LineKind Kind;
+  bool Result, Outcome;
 };
 } // namespace
 
-/// Calls \p Visit(Head, Key, Text) for each entry of a block.
+/// Calls \p Visit(Head, Text) for each entry of a block.
 template <typename F> static void forEach(const TopicStore::Block &B, F Visit) {
-  for (size_t At = 0; At < B.Data.size();) {
+  const std::string_view Data = B.data();
+  for (size_t At = 0; At < Data.size();) {
     Head H;
-    std::memcpy(&H, B.Data.data() + At, sizeof(H));
-    const char *Key = B.Data.data() + At + sizeof(H);
-    const char *Text = Key + std::strlen(Key) + 1;
-    Visit(H, Key, std::string_view(Text, Key + H.Length - Text));
+    std::memcpy(&H, Data.data() + At, sizeof(H));
+    Visit(H, Data.substr(At + sizeof(H), H.Length));
     At += sizeof(H) + H.Length;
   }
 }
 
-char *TopicStore::allocate(size_t Length) {
-  if (Blocks.empty() || Blocks.back().Entries >= BlockEntries ||
-      Blocks.back().Data.size() >= BlockBytes) {
-    if (Blocks.size() == MostBlocks)
-      evict();
-    Blocks.emplace_back();
+TopicStore::Block::Block(Block &&From) noexcept { *this = std::move(From); }
+
+TopicStore::Block &TopicStore::Block::operator=(Block &&From) noexcept {
+  std::swap(Data, From.Data);
+  std::swap(Size, From.Size);
+  std::swap(Entries, From.Entries);
+  return *this;
+}
+
+TopicStore::Block::~Block() {
+  if (Data)
+    munmap(Data, BlockBytes);
+}
+
+char *TopicStore::Block::allocate(size_t Length) {
+  if (!Data) {
+    void *New = mmap(nullptr, BlockBytes, PROT_READ | PROT_WRITE,
+                     MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (New == MAP_FAILED)
+      return nullptr;
+    Data = static_cast<char *>(New);
   }
-  Block &Last = Blocks.back();
-  const size_t At = Last.Data.size();
-  Last.Data.resize(At + Length);
-  ++Last.Entries;
-  Bytes += Length;
-  return Last.Data.data() + At;
+  if (Entries == BlockEntries || BlockBytes - Size < Length)
+    return nullptr;
+  char *Place = Data + Size;
+  Size += Length;
+  ++Entries;
+  return Place;
+}
+
+/// Space for an entry of \p Length bytes; null if there is no memory.
+char *TopicStore::allocate(size_t Length) {
+  char *Place =
+      Used ? Blocks[(First + Used - 1) % MostBlocks].allocate(Length) : nullptr;
+  if (!Place) {
+    if (Used == MostBlocks)
+      evict();
+    Place = Blocks[(First + Used++) % MostBlocks].allocate(Length);
+  }
+  Bytes += Place ? Length : 0;
+  return Place;
 }
 
 void TopicStore::add(Time When, const Report &R) {
-  const size_t KeyBytes = std::strlen(R.Key) + 1;
-  const Head H{When.Ns,
-               R.Compared,
-               R.Threshold,
-               1,
-               static_cast<uint32_t>(KeyBytes),
-               When.Guessed,
-               true,
-               R.Result,
-               R.Outcome};
-  char *To = allocate(sizeof(H) + KeyBytes);
-  std::memcpy(To, &H, sizeof(H));
-  std::memcpy(To + sizeof(H), R.Key, KeyBytes);
+  Site *Of = sites().find(R.Key);
+  if (!Of)
+    return;
+  const Head H{When.Ns, R.Compared,   R.Threshold,      Of,       1,
+               0,       When.Guessed, LineKind::Report, R.Result, R.Outcome};
+  if (char *To = allocate(sizeof(H))) {
+    std::memcpy(To, &H, sizeof(H));
+    return;
+  }
+  ++Of->Evicted.Count;
+  ++DroppedInAll;
+  HasEvicted = true;
 }
 
-void TopicStore::add(Time When, const Summary &S) {
-  const std::string Text = format(S);
-  const size_t KeyBytes = std::strlen(S.Key) + 1;
-  const Head H{When.Ns,
-               S.Compared,
-               S.Threshold,
-               S.Count,
-               static_cast<uint32_t>(KeyBytes + Text.size()),
-               When.Guessed,
-               false,
-               S.Result,
-               S.Outcome};
-  char *To = allocate(sizeof(H) + H.Length);
-  std::memcpy(To, &H, sizeof(H));
-  std::memcpy(To + sizeof(H), S.Key, KeyBytes);
-  std::memcpy(To + sizeof(H) + KeyBytes, Text.data(), Text.size());
+void TopicStore::add(Time When, const Summary &S, bool MayBeShort) {
+  const bool IsShort = S.IsLight && MayBeShort;
+  // A short summary's text begins with its span.
+  const std::string Text = IsShort ? seconds(S.BeginRos, 7) + ';' +
+                                         seconds(S.EndRos, 7) + '\n' +
+                                         formatShort(S)
+                                   : format(S);
+  const Head H{
+      When.Ns,      S.Compared,
+      S.Threshold,  &sites()[S.Site],
+      S.Count,      static_cast<uint32_t>(Text.size()),
+      When.Guessed, IsShort ? LineKind::ShortSummary : LineKind::Summary,
+      S.Result,     S.Outcome};
+  if (char *To = allocate(sizeof(H) + H.Length)) {
+    std::memcpy(To, &H, sizeof(H));
+    std::memcpy(To + sizeof(H), Text.data(), Text.size());
+    return;
+  }
+  account(S.Key, DropReason::Stopped, S.Count, 0);
 }
 
 void TopicStore::add(const Dropped &D) {
   account(D.Key, D.Why, D.Count, D.Flops);
 }
 
-void TopicStore::account(std::string Key, DropReason Why, uint64_t Count,
+void TopicStore::account(const std::string &Key, DropReason Why, uint64_t Count,
                          uint64_t Flops) {
-  auto &[Counted, CountedFlops] = Accounts[{std::move(Key), Why}];
+  auto &[Counted, CountedFlops] = Accounts[{Key, Why}];
   Counted += Count;
   CountedFlops += Flops;
   DroppedInAll += Count;
@@ -100,69 +130,118 @@ void TopicStore::account(std::string Key, DropReason Why, uint64_t Count,
 /// Drops the oldest block to make space. Of the flops in it, those are counted
 /// that the dropped reports show.
 void TopicStore::evict() {
-  const Block Oldest = std::move(Blocks.front());
-  Blocks.pop_front();
-  Bytes -= Oldest.Data.size();
-  forEach(Oldest, [this](const Head &H, const char *Key, std::string_view) {
-    bool Flop = false;
-    if (H.IsReport) {
-      const auto Last = LastEvicted.find(std::string_view(Key));
-      Flop = Last != LastEvicted.end() && Last->second != H.Result;
-      if (Last == LastEvicted.end())
-        LastEvicted.emplace(Key, H.Result);
-      else
-        Last->second = H.Result;
+  Block &Oldest = Blocks[First];
+  forEach(Oldest, [this](const Head &H, std::string_view) {
+    Site &Of = *H.Of;
+    Of.Evicted.Count += H.Evaluations;
+    DroppedInAll += H.Evaluations;
+    if (H.Kind == LineKind::Report) {
+      Of.Evicted.Flops += Of.LastEvicted >= 0 && Of.LastEvicted != H.Result;
+      Of.LastEvicted = H.Result;
     }
-    account(Key, DropReason::Stopped, H.Evaluations, Flop);
   });
+  HasEvicted = true;
+  Bytes -= Oldest.data().size();
+  Oldest.clear();
+  First = (First + 1) % MostBlocks;
+  --Used;
 }
 
 TopicStore::Batch TopicStore::takeAll() {
-  Batch All{std::move(Blocks), std::move(Accounts), DroppedInAll};
-  Blocks.clear();
+  Batch All;
+  for (; Used; First = (First + 1) % MostBlocks, --Used)
+    All.Blocks.push_back(std::move(Blocks[First]));
+  if (HasEvicted)
+    for (uint32_t Number = 1; Number <= sites().size(); ++Number) {
+      Site &S = sites()[Number];
+      S.LastEvicted = -1;
+      const uint64_t Count = S.Evicted.Count.exchange(0);
+      if (!Count)
+        continue;
+      auto &Counts = Accounts[{S.Key, DropReason::Stopped}];
+      Counts.first += Count;
+      Counts.second += S.Evicted.Flops.exchange(0);
+    }
+  HasEvicted = false;
+  All.Accounts = std::move(Accounts);
+  All.Names = std::move(Names);
+  All.DroppedInAll = DroppedInAll;
   Accounts.clear();
-  LastEvicted.clear();
+  Names.clear();
   Bytes = 0;
   return All;
 }
 
 uint64_t TopicStore::giveUp() {
   const uint64_t Before = DroppedInAll;
-  while (!Blocks.empty())
+  while (Used)
     evict();
   return DroppedInAll - Before;
+}
+
+const char *prefixOf(LineKind K) {
+  switch (K) {
+  case LineKind::Report:
+    return "threshold_information:";
+  case LineKind::Summary:
+  case LineKind::ShortSummary:
+    return "threshold_summary:";
+  case LineKind::Dropped:
+    return "threshold_dropped:";
+  case LineKind::Name:
+    return "threshold_name:";
+  }
+  return "";
+}
+
+void forEachLine(
+    const TopicStore::Batch &B, int64_t Now, bool Simulated,
+    const std::function<void(LineKind, int64_t, std::string_view)> &Visit) {
+  for (const TopicStore::Block &Part : B.Blocks)
+    forEach(Part, [&](const Head &H, std::string_view Text) {
+      const int64_t Ns = H.Guessed && Simulated ? 0 : H.Ns;
+      if (H.Kind == LineKind::Report)
+        Visit(H.Kind, Ns,
+              format(Report{H.Of->Key.c_str(), H.Result, H.Compared,
+                            H.Threshold, H.Outcome}));
+      else
+        Visit(H.Kind, Ns, Text);
+    });
+  for (const auto &[Of, Counts] : B.Accounts)
+    Visit(LineKind::Dropped, Now,
+          format(Dropped{Of.first.c_str(), 0, Counts.first, Counts.second,
+                         Of.second}));
+  for (const std::string &Name : B.Names)
+    Visit(LineKind::Name, Now, Name);
 }
 
 std::vector<TopicStore::Lines> linesOf(const TopicStore::Batch &B, int64_t Now,
                                        bool Simulated, size_t MessageBytes) {
   std::vector<TopicStore::Lines> Found(1);
-  const auto Add = [&](int64_t Ns, std::string_view What, std::string_view Text,
-                       bool IsReport) {
-    if (Found.back().Text.size() >= MessageBytes)
-      Found.emplace_back();
-    TopicStore::Lines &Last = Found.back();
-    Last.Text += '\n';
-    Last.Text += seconds(Ns, 7);
-    Last.Text += ',';
-    Last.Text += What;
-    Last.Text += Text;
-    Last.Reports += IsReport;
-  };
-  for (const TopicStore::Block &Part : B.Blocks)
-    forEach(Part, [&](const Head &H, const char *Key, std::string_view Text) {
-      const int64_t Ns = H.Guessed && Simulated ? 0 : H.Ns;
-      if (H.IsReport)
-        Add(Ns, "",
-            format(Report{Key, H.Result, H.Compared, H.Threshold, H.Outcome}),
-            true);
-      else
-        Add(Ns, "threshold_summary:", Text, false);
-    });
-  for (const auto &[Of, Counts] : B.Accounts)
-    Add(Now, "threshold_dropped:",
-        format(Dropped{Of.first.c_str(), 0, Counts.first, Counts.second,
-                       Of.second}),
-        false);
+  std::string Span; ///< of the short summaries that follow in the message
+  forEachLine(B, Now, Simulated,
+              [&](LineKind Kind, int64_t Ns, std::string_view Text) {
+                if (Found.back().Text.size() >= MessageBytes) {
+                  Found.emplace_back();
+                  Span.clear();
+                }
+                TopicStore::Lines &Last = Found.back();
+                if (Kind == LineKind::ShortSummary) {
+                  const size_t End = Text.find('\n');
+                  if (Text.substr(0, End) != Span) {
+                    Span = Text.substr(0, End);
+                    (Last.Text += "\n@") += Span;
+                  }
+                  (Last.Text += "\n~") += Text.substr(End + 1);
+                  return;
+                }
+                ((Last.Text += '\n') += seconds(Ns, 7)) += ',';
+                if (Kind == LineKind::Report)
+                  ++Last.Reports;
+                else
+                  Last.Text += prefixOf(Kind);
+                Last.Text += Text;
+              });
   if (Found.back().Text.empty())
     Found.pop_back();
   return Found;

@@ -9,16 +9,21 @@
 
 #include "Report.h"
 
-#include <deque>
+#include <functional>
 #include <map>
+#include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace tpc {
 
 /// Keeps reports and summaries in order: the newest 65,536 in blocks of 4,096.
-/// What is dropped to make space is counted for each key.
+/// What is dropped to make space is counted for each site.
+///
+/// add() of a report allocates nothing from the heap: a signal handler may
+/// interrupt it and shut the node down, for which roscpp needs the heap.
 class TopicStore {
 public:
   /// ROS time. Guessed: wall time, taken before it was known which time the
@@ -35,23 +40,39 @@ public:
   };
 
   void add(Time When, const Report &R);
-  void add(Time When, const Summary &S);
+  /// \p MayBeShort: a light summary takes the short form that a batch has.
+  void add(Time When, const Summary &S, bool MayBeShort);
   void add(const Dropped &D);
+  void add(const ReadName &N) { Names.insert(N.Text); }
 
   size_t bytes() const { return Bytes; }
 
-  struct Block {
-    std::string Data;
-    uint32_t Entries = 0;
+  /// A stretch of entries, in memory that comes from the kernel.
+  class Block {
+  public:
+    Block() = default;
+    Block(Block &&From) noexcept;
+    Block &operator=(Block &&From) noexcept;
+    ~Block();
+
+    /// Space for \p Length bytes more; null if it is full.
+    char *allocate(size_t Length);
+    void clear() { Size = Entries = 0; }
+    std::string_view data() const { return {Data, Size}; }
+
+  private:
+    char *Data = nullptr;
+    uint32_t Size = 0, Entries = 0;
   };
 
   /// The contents of a store, taken out so that they can be formatted without
   /// its lock.
   struct Batch {
-    std::deque<Block> Blocks;
+    std::vector<Block> Blocks;
     std::map<std::pair<std::string, DropReason>, std::pair<uint64_t, uint64_t>>
         Accounts;
-    uint64_t DroppedInAll = 0; ///< since the store was created
+    std::set<std::string> Names; ///< `KEY,NAME` of parameters
+    uint64_t DroppedInAll = 0;   ///< since the store was created
   };
 
   /// Takes out everything that is waiting; the store is then empty, but its
@@ -63,22 +84,37 @@ public:
   uint64_t giveUp();
 
 private:
-  char *allocate(size_t Length);
-  void account(std::string Key, DropReason Why, uint64_t Count, uint64_t Flops);
-  void evict();
+  static constexpr size_t MostBlocks = 16;
 
-  std::deque<Block> Blocks;
+  char *allocate(size_t Length);
+  void evict();
+  void account(const std::string &Key, DropReason Why, uint64_t Count,
+               uint64_t Flops);
+
+  Block Blocks[MostBlocks]; ///< a ring
+  size_t First = 0, Used = 0;
   decltype(Batch::Accounts) Accounts;
-  std::map<std::string, bool, std::less<>> LastEvicted;
+  decltype(Batch::Names) Names;
+  bool HasEvicted = false; ///< since the last batch
   size_t Bytes = 0;
   uint64_t DroppedInAll = 0;
 };
 
-/// The lines of \p B, in messages of about \p MessageBytes.
+/// What a line begins with, after its time; a report has nothing there in a
+/// batch.
+enum class LineKind : uint8_t { Report, Summary, ShortSummary, Dropped, Name };
+const char *prefixOf(LineKind K);
+
+/// Calls \p Visit(kind, ROS time in ns, text) for everything in \p B.
 ///
 /// \param Now       ROS time of the accounts of what was dropped.
 /// \param Simulated times that were guessed are not those of the node: they
-///                  are written as 0, which readers take as not known.
+///                  are 0, which readers take as not known.
+void forEachLine(
+    const TopicStore::Batch &B, int64_t Now, bool Simulated,
+    const std::function<void(LineKind, int64_t, std::string_view)> &Visit);
+
+/// The lines of \p B, in messages of about \p MessageBytes.
 std::vector<TopicStore::Lines> linesOf(const TopicStore::Batch &B, int64_t Now,
                                        bool Simulated, size_t MessageBytes);
 

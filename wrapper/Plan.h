@@ -12,8 +12,8 @@ namespace tpc {
 
 struct Plan {
   std::vector<std::string> Added; ///< flags to add after those of the caller
-  std::vector<std::string>
-      Dropped;         ///< flags of the caller that no other flag undoes
+  /// Flags of the caller that no other flag undoes.
+  std::vector<std::string> Dropped;
   std::string Warning; ///< why nothing is reported; empty if all is well
 };
 

@@ -4,6 +4,7 @@
 #include "Options.h"
 #include "control/IfStatements.h"
 
+#include "llvm/ADT/SetVector.h"
 #include "llvm/IR/CFG.h"
 #include "llvm/IR/IntrinsicInst.h"
 
@@ -155,19 +156,27 @@ pathToHandler(const InvokeInst &Invoke, ThrownType Thrown,
   return Sure;
 }
 
-/// True if the program always ends or leaves by an exception soon after \p BB,
-/// as a failed assertion does.
+/// How far a failed check is followed.
+static constexpr unsigned MaxBlocksOfEnd = 64;
+
+/// True if every way from \p BB soon ends the program or leaves by an
+/// exception, as a failed assertion does.
 static bool endsProgram(const BasicBlock *BB) {
-  for (unsigned Steps = 0; Steps < 8 && BB; ++Steps) {
-    const Instruction *T = BB->getTerminator();
+  SmallSetVector<const BasicBlock *, 16> Work;
+  Work.insert(BB);
+  bool Ends = false;
+  for (unsigned N = 0; N < Work.size(); ++N) {
+    const Instruction *T = Work[N]->getTerminator();
     if (isa<UnreachableInst>(T))
-      return true;
-    if (const auto *Invoke = dyn_cast<InvokeInst>(T))
-      BB = Invoke->getNormalDest();
+      Ends = true;
+    else if (const auto *Invoke = dyn_cast<InvokeInst>(T))
+      Work.insert(Invoke->getNormalDest());
+    else if (succ_empty(T) || Work.size() > MaxBlocksOfEnd)
+      return false;
     else
-      BB = BB->getUniqueSuccessor();
+      Work.insert(succ_begin(T), succ_end(T));
   }
-  return false;
+  return Ends;
 }
 
 Flow::Flow(Function &F, UserSources &Sources, const ThrowsResult &Thrown) {

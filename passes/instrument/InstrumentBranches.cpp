@@ -2,6 +2,7 @@
 #include "instrument/InstrumentBranches.h"
 
 #include "control/IfStatements.h"
+#include "instrument/HeldNumbers.h"
 #include "support/Compat.h"
 #include "support/Guard.h"
 #include "support/Print.h"
@@ -22,9 +23,7 @@ STATISTIC(NumReports, "Reports inserted");
 /// `void log_one(char *key, bool result, double cmp, double thresh, bool res)`
 static constexpr StringLiteral LogName = "_Z7log_onePcbddb";
 
-/// The instruction before which the value of \p I is reported; null if no place
-/// follows \p I alone.
-static Instruction *insertionPointAfter(Instruction &I) {
+Instruction *insertionPointAfter(Instruction &I) {
   if (auto *Invoke = dyn_cast<InvokeInst>(&I)) {
     BasicBlock *Next = Invoke->getNormalDest();
     return Next->getSinglePredecessor() ? &*Next->getFirstInsertionPt()
@@ -128,19 +127,22 @@ std::optional<Report> planReport(const Comparison &C, bool IsUnsigned,
   if (!C.Compare)
     return planFlag(C, IsUnsigned, Analysed, R) ? std::optional(R)
                                                 : std::nullopt;
-  auto *Compare = cast_or_null<CmpInst>(Analysed.original(C.Compare));
-  if (!Compare || Compare->getType()->isVectorTy())
+  auto *There = cast_or_null<Instruction>(Analysed.original(C.Compare));
+  if (!There || There->getType()->isVectorTy())
     return std::nullopt;
-  R.Threshold = Compare->getOperand(C.Threshold);
-  R.Compared = Compare->getOperand(1 - C.Threshold);
-  R.Outcome = Compare;
-  // Equality does not say how its operands are to be read; a zero-extended
-  // operand was not negative.
-  R.Signed = !Compare->isUnsigned() &&
-             !(Compare->isEquality() &&
-               (IsUnsigned || any_of(Compare->operands(), [](const Use &U) {
-                  return isa<ZExtInst>(U);
-                })));
+  // A call has its operands in the same order.
+  R.Held = dyn_cast<CallBase>(There);
+  R.Threshold = There->getOperand(C.Threshold);
+  R.Compared = There->getOperand(1 - C.Threshold);
+  R.Outcome = There;
+  if (const auto *Compare = dyn_cast<CmpInst>(There))
+    // Equality does not say how its operands are to be read; a zero-extended
+    // operand was not negative.
+    R.Signed = !Compare->isUnsigned() &&
+               !(Compare->isEquality() &&
+                 (IsUnsigned || any_of(Compare->operands(), [](const Use &U) {
+                    return isa<ZExtInst>(U);
+                  })));
   if (C.Direct) {
     R.Result = outcomeOf(*C.Predicate, Analysed);
     R.Switch = dyn_cast<SwitchInst>(Predicate);
@@ -148,11 +150,11 @@ std::optional<Report> planReport(const Comparison &C, bool IsUnsigned,
     return R;
   }
   Instruction *Result = findJoined(C.Compare, Analysed);
-  assert(Result && "the comparison has a counterpart, so the chain has one");
   R.Result = Result;
-  R.Before = insertionPointAfter(*Result);
-  assert(R.Before && "only an invoke may end a block, and the chain has none");
-  return R;
+  // The comparison has a counterpart, so the chain has one, and no invoke ends
+  // it. Should that ever be wrong, only this comparison has no report.
+  R.Before = Result ? insertionPointAfter(*Result) : nullptr;
+  return R.Before ? std::optional(R) : std::nullopt;
 }
 
 /// \p V as a double.
@@ -286,14 +288,24 @@ std::string insertReports(Module &M, ArrayRef<Report> Reports) {
                                GlobalValue::PrivateLinkage, Text, "tpc.key");
       Key->setUnnamedAddr(GlobalValue::UnnamedAddr::Global);
     }
+    Value *Compared = R.Compared, *Threshold = R.Threshold;
+    if (R.Held) {
+      // Behind the call, the objects may be gone.
+      Above = R.Held->getPrevNode();
+      Before = R.Held;
+      IRBuilder<> B(R.Held);
+      Compared = heldSeconds(B, Compared, *R.Held);
+      Threshold = heldSeconds(B, Threshold, *R.Held);
+      Collect();
+    }
     Above = R.Before->getPrevNode();
     Before = R.Before;
     IRBuilder<> B(R.Before);
     B.SetCurrentDebugLocation(R.Before->getDebugLoc());
     Value *Result = R.Switch ? takesCase(B, *R.Switch) : toBool(B, R.Result);
     Value *Outcome = R.Outcome == R.Result ? Result : toBool(B, R.Outcome);
-    B.CreateCall(ReportTo, {Key, Result, toDouble(B, R.Compared, R.Signed),
-                            toDouble(B, R.Threshold, R.Signed), Outcome});
+    B.CreateCall(ReportTo, {Key, Result, toDouble(B, Compared, R.Signed),
+                            toDouble(B, Threshold, R.Signed), Outcome});
     Collect();
   };
   std::string Why;

@@ -27,9 +27,15 @@ struct Report {
   llvm::SwitchInst *Switch = nullptr;
   llvm::Value *Compared; ///< the value that is compared with the threshold
   llvm::Value *Threshold;
+  /// If those two are objects that hold a number: the call that compares them.
+  llvm::CallBase *Held = nullptr;
   llvm::Value *Outcome; ///< the outcome of the comparison
-  bool Signed;          ///< whether integers are signed
+  bool Signed = true;   ///< whether integers are signed
 };
+
+/// The instruction before which what follows \p I is inserted; null if no place
+/// follows \p I alone.
+llvm::Instruction *insertionPointAfter(llvm::Instruction &I);
 
 /// The report for \p C; none if a value of the analysed program has no
 /// counterpart in the original program. \p IsUnsigned says whether the type of

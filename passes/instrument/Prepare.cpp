@@ -3,6 +3,7 @@
 
 #include "Options.h"
 #include "Rules.h"
+#include "instrument/HeldNumbers.h"
 #include "params/Texts.h"
 #include "support/Functions.h"
 #include "support/Names.h"
@@ -52,9 +53,8 @@ static unsigned sizeOf(const Function &F) {
 /// were not marked before. Functions that a rule describes stay calls.
 static SmallVector<WeakVH, 0>
 markSmallLibraryFunctions(Module &M, const Options &Opts,
-                          std::shared_ptr<const Rules> Tables) {
+                          const RuleMatches &Known) {
   SmallVector<WeakVH, 0> Marked;
-  const RuleMatches Known(std::move(Tables), M);
   UserSources Sources(Opts);
   for (Function &F : definedFunctions(M)) {
     if (!F.getSubprogram() || Sources.has(F) ||
@@ -118,8 +118,9 @@ static void prepare(Module &M, const Options &Opts,
   // such a value back would never end.
   for (Function &F : definedFunctions(M))
     EliminateUnreachableBlocks(F);
-  SmallVector<WeakVH, 0> Marked =
-      markSmallLibraryFunctions(M, Opts, std::move(Tables));
+  const RuleMatches Known(std::move(Tables), M);
+  exposeHeldNumbers(M, Known);
+  SmallVector<WeakVH, 0> Marked = markSmallLibraryFunctions(M, Opts, Known);
   inlineMarked(M);
   for (const WeakVH &F : Marked)
     if (F)
@@ -358,6 +359,13 @@ bool AnalysedModule::bringBack() {
       Pointer = GEP->getPointerOperand();
     return Pointer && Promoted.contains(Pointer);
   };
+  // exposeHeldNumbers() writes what these calls do as instructions.
+  auto IsHeld = [&](const Instruction &I) {
+    const auto *Call = dyn_cast<CallBase>(&I);
+    const Function *F = Call ? Call->getCalledFunction() : nullptr;
+    const Rule *Row = F ? Tables->match(*F).Row : nullptr;
+    return Row && Row->Kind == Rule::Held;
+  };
   // In the order of the program, an instruction comes before those that it
   // replaces.
   for (auto [I, Handle] : zip_equal(There, Instructions)) {
@@ -365,7 +373,8 @@ bool AnalysedModule::bringBack() {
     if (auto *C = dyn_cast_or_null<Instruction>(Now);
         C && !IsPromoted(*I) &&
         (C->getOpcode() == I->getOpcode() ||
-         (isa<AtomicRMWInst>(I) && isa<LoadInst>(C))))
+         (isa<AtomicRMWInst>(I) && isa<LoadInst>(C)) ||
+         (isa<FCmpInst>(C) && IsHeld(*I))))
       Back.try_emplace(C, I);
   }
   return true;

@@ -19,12 +19,16 @@ void AccessBuilder::addWrite(Instruction &I, const Location &L) {
 }
 
 void AccessBuilder::addCopy(Instruction &I, Locations To, Locations From) {
+  unsigned Number = R.Copies.size();
   for (const Location &L : To) {
-    R.CopiesTo.add(R.Copies.size(), L);
+    R.TargetIndex.add(R.Targets.size(), L);
+    R.Targets.push_back({Number, L});
     addWrite(I, L);
   }
-  for (const Location &L : From)
-    R.CopiesFrom.add(R.Copies.size(), L);
+  for (const Location &L : From) {
+    R.SourceIndex.add(R.Sources.size(), L);
+    R.Sources.push_back({Number, L});
+  }
   R.Copies.push_back({&I, std::move(To), std::move(From)});
 }
 
@@ -105,6 +109,18 @@ static bool takesOne(const CallBase &Call, unsigned N, const Rule *Row) {
          Callee->getName().starts_with("_ZN");
 }
 
+/// True if \p Call, of a function without a body, cannot write the object that
+/// its argument \p N points to.
+bool AccessBuilder::isConstArgument(const CallBase &Call, unsigned N) {
+  const Function *Callee = Call.getCalledFunction();
+  if (!Callee || !Callee->isDeclaration())
+    return false;
+  auto [It, IsNew] = ConstArguments.try_emplace(Callee);
+  if (IsNew)
+    It->second = constArguments(*Callee);
+  return N < It->second.size() && It->second.test(N);
+}
+
 /// Records what \p Call can write.
 void AccessBuilder::fileCall(CallBase &Call) {
   // Calls that only query a text do not write it.
@@ -122,14 +138,17 @@ void AccessBuilder::fileCall(CallBase &Call) {
   const Value *Constant = constantObject(Call, Method);
   const Value *Filled = filledBy(Call, Method);
   for (const auto &[N, Arg] : enumerate(Call.args())) {
-    if (!Arg->getType()->isPointerTy() || Call.onlyReadsMemory(N) ||
-        Arg.get() == Constant)
+    if (!Arg->getType()->isPointerTy() || Call.onlyReadsMemory(N))
       continue;
-    if (Filled && Arg.get() != Filled &&
-        !Call.paramHasAttr(N, Attribute::StructRet)) {
-      R.PutIn.insert(&Call.getArgOperandUse(N));
+    bool IsPutIn = Filled && Arg.get() != Filled &&
+                   !Call.paramHasAttr(N, Attribute::StructRet);
+    bool IsConst = Arg.get() == Constant;
+    bool IsLeftAlone =
+        IsPutIn || (Opaque && (IsConst || isConstArgument(Call, N)));
+    if (IsLeftAlone)
+      R.Unchanged.insert(&Call.getArgOperandUse(N));
+    if (IsLeftAlone || IsConst)
       continue;
-    }
     for (const Location &L : Pointers.handed(Arg, takesOne(Call, N, Row))) {
       const auto *Global = dyn_cast_or_null<GlobalVariable>(L.Root);
       if (Global && Global->isConstant())

@@ -11,6 +11,9 @@
 #include "memory/AccessIndex.h"
 #include "memory/PointsTo.h"
 
+#include "llvm/ADT/DenseMap.h"
+#include "llvm/ADT/SmallBitVector.h"
+
 namespace tpc {
 
 class AccessBuilder {
@@ -29,12 +32,15 @@ private:
   void putInto(llvm::CallBase &Call);
   void fileReplacing(llvm::CallBase &Call, const llvm::Value *Pointer);
   void fileCall(llvm::CallBase &Call);
+  bool isConstArgument(const llvm::CallBase &Call, unsigned N);
 
   AccessIndex &R;
   PointsTo &Pointers;
   const CallGraphResult &Calls;
   const RuleMatches &Rules;
   llvm::Module &M;
+  /// Of functions without a body.
+  llvm::DenseMap<const llvm::Function *, llvm::SmallBitVector> ConstArguments;
 };
 
 } // namespace tpc

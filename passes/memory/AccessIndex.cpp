@@ -27,39 +27,42 @@ const Locations &AccessIndex::throughCopies(const Location &L, bool Backward) {
   if (!New)
     return All;
   All.push_back(L);
-  const ObjectIndex &In = Backward ? CopiesTo : CopiesFrom;
+  const ObjectIndex &In = Backward ? TargetIndex : SourceIndex;
+  ArrayRef<CopyEnd> Ends = Backward ? Targets : Sources;
   for (unsigned Next = 0; Next < All.size() && All.size() < MaxCopied; ++Next) {
     const Location Here = All[Next];
-    auto Follow = [&](unsigned N) {
-      const Copy &C = Copies[N];
+    In.eachAround(Here, [&](unsigned N) {
       if (All.size() >= MaxCopied)
         return;
-      for (const Location &Object : Backward ? C.To : C.From)
-        if (auto Rest = Alias.partOf(Object, Here))
-          for (Location Other : Backward ? C.From : C.To) {
-            Types.extend(Other, *Rest);
-            if (All.size() < MaxCopied && none_of(All, [&](const Location &K) {
-                  return K.isSame(Other);
-                }))
-              All.push_back(std::move(Other));
-          }
-    };
-    In.eachAround(Here, Follow);
+      auto Rest = Alias.partOf(Ends[N].Object, Here);
+      if (!Rest)
+        return;
+      const Copy &C = Copies[Ends[N].Copy];
+      for (Location Other : Backward ? C.From : C.To) {
+        Types.extend(Other, *Rest);
+        if (All.size() < MaxCopied &&
+            none_of(All, [&](const Location &K) { return K.isSame(Other); }))
+          All.push_back(std::move(Other));
+      }
+    });
   }
   return All;
 }
 
-SmallVector<Instruction *, 4> AccessIndex::copiesTo(const Location &L) {
+SmallVector<Instruction *, 4> AccessIndex::copiesTo(const Location &L,
+                                                    DenseSet<unsigned> &Known) {
   SmallSetVector<Instruction *, 4> Found;
+  auto Add = [&](unsigned N) { Found.insert(Copies[Targets[N].Copy].I); };
   for (const Location &Here : throughCopies(L, /*Backward=*/true)) {
-    CopiesTo.eachAround(Here, [&](unsigned N) {
-      if (any_of(Copies[N].To, [&](const Location &Object) {
-            return Alias.partOf(Object, Here).has_value();
-          }))
-        Found.insert(Copies[N].I);
+    TargetIndex.eachOnPath(Here, [&](unsigned N) {
+      if (Alias.partOf(Targets[N].Object, Here))
+        Add(N);
     });
+    if (auto Class = ObjectIndex::classAround(Here);
+        Class && Known.insert(*Class).second)
+      TargetIndex.eachWith(*Class, Add);
   }
-  return {Found.begin(), Found.end()};
+  return Found.takeVector();
 }
 
 bool AccessIndex::reaches(const Location &From, const Location &To) {

@@ -39,8 +39,8 @@ class AccessIndex {
 public:
   AccessIndex(const Aliases &Alias, LocationTypes &Types)
       : Alias(Alias), Types(Types), LoadIndex(Alias), StoreIndex(Alias),
-        HandedIndex(Alias), CopiesTo(Alias, Types), CopiesFrom(Alias, Types),
-        WritesByObject(Alias, Types) {}
+        HandedIndex(Alias), TargetIndex(Alias, Types),
+        SourceIndex(Alias, Types), WritesByObject(Alias, Types) {}
 
   llvm::ArrayRef<Access> loads() const { return Loads; }
   llvm::ArrayRef<Access> stores() const { return Stores; }
@@ -62,8 +62,12 @@ public:
   /// or the two can be the same variable.
   bool reaches(const Location &From, const Location &To);
   /// The copies of whole objects that give \p L, or variables copied to it, a
-  /// value.
-  llvm::SmallVector<llvm::Instruction *, 4> copiesTo(const Location &L);
+  /// value. Any object of a class can be the one that a variable without a root
+  /// is in: the copies of a class that is in \p Known are left out, and the
+  /// classes of those that are returned are added, so that who collects the
+  /// copies of many variables gets those thousands once.
+  llvm::SmallVector<llvm::Instruction *, 4>
+  copiesTo(const Location &L, llvm::DenseSet<unsigned> &Known);
 
   /// The writes into the object at \p L, with the location of each: stores,
   /// copies, and calls that get a pointer to the object or to a part of it.
@@ -77,14 +81,22 @@ public:
   /// variable is not known.
   const Location *replacedBy(const llvm::Instruction &Call) const;
 
-  /// True if \p Arg is only put into a container.
-  bool isPutIn(const llvm::Use &Arg) const { return PutIn.contains(&Arg); }
+  /// True if the call does not write what \p Arg points to: it only puts it
+  /// into a container, or takes it as pointer to const.
+  bool isUnchanged(const llvm::Use &Arg) const {
+    return Unchanged.contains(&Arg);
+  }
 
 private:
   friend class AccessBuilder;
   struct Copy {
     llvm::Instruction *I;
     Locations To, From;
+  };
+  /// One of the objects that a copy reads or writes.
+  struct CopyEnd {
+    unsigned Copy;
+    Location Object;
   };
   const Locations &throughCopies(const Location &L, bool Backward);
 
@@ -93,18 +105,19 @@ private:
   llvm::SmallVector<Access, 0> Loads, Stores;
   llvm::SmallVector<Access, 0> Handed; ///< calls without a known body
   llvm::SmallVector<Copy, 0> Copies;
+  llvm::SmallVector<CopyEnd, 0> Targets, Sources;
   /// Cached results: the variables that copies connect with a variable.
   LocationMap<Locations> Backward, Forward;
   LocationIndex LoadIndex, StoreIndex, HandedIndex;
-  ObjectIndex CopiesTo, CopiesFrom;
+  ObjectIndex TargetIndex, SourceIndex;
   /// Of all writes, numbered as in PartWrites.
   PartIndex WritesByObject;
   llvm::SmallVector<Access, 0> PartWrites;
   llvm::SmallVector<Replacement, 0> Replacements;
   /// Calls that replace a whole variable, and that variable.
   llvm::DenseMap<const llvm::Instruction *, Location> Replaced;
-  /// Arguments that are put into a container.
-  llvm::DenseSet<const llvm::Use *> PutIn;
+  /// Arguments of calls that do not write what those point to.
+  llvm::DenseSet<const llvm::Use *> Unchanged;
 };
 
 class ClassObjectAccess : public llvm::AnalysisInfoMixin<ClassObjectAccess> {

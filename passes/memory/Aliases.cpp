@@ -73,7 +73,7 @@ std::optional<SmallVector<Step, 4>> Aliases::partOf(const Location &Object,
   if (Object.Root && L.Root) {
     if (Object.Root != L.Root || !Object.RootItem.mayBe(L.RootItem) ||
         Path.size() < Object.Path.size() ||
-        !Location::mayEqual(Path.take_front(Object.Path.size()), Object.Path))
+        !StepPath::mayEqual(Path.take_front(Object.Path.size()), Object.Path))
       return std::nullopt;
     return SmallVector<Step, 4>(Path.drop_front(Object.Path.size()));
   }

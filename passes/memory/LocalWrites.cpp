@@ -159,8 +159,8 @@ bool LocalWrites::replaces(const Instruction &Write, const Location &L) {
   return Whole && Whole->Root == L.Root &&
          Whole->Path.size() <= L.Path.size() &&
          Whole->RootItem.Number == L.RootItem.Number &&
-         Location::areSame(Whole->Path,
-                           ArrayRef(L.Path).take_front(Whole->Path.size()));
+         StepPath::areSame(Whole->Path,
+                           L.Path.steps().take_front(Whole->Path.size()));
 }
 
 /// Each load walks back through its function, which is quadratic in generated

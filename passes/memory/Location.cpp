@@ -8,9 +8,18 @@ using namespace llvm;
 
 namespace tpc {
 
-bool endsWith(ArrayRef<Step> Path, ArrayRef<Step> Tail) {
-  return Tail.size() <= Path.size() &&
-         Location::mayEqual(Tail, Path.take_back(Tail.size()));
+void Location::widenAll() {
+  if (RootItem.isNumber())
+    RootItem = {Nth::Any};
+  if (none_of(Path, [](const Step &S) { return S.Item.isNumber(); }))
+    return;
+  StepPath Wide;
+  for (Step S : Path) {
+    if (S.Item.isNumber())
+      S.Item = {Nth::Any};
+    Wide.push_back(S);
+  }
+  Path = Wide;
 }
 
 bool Location::mayBe(const Location &O) const {
@@ -52,10 +61,7 @@ void addTo(Locations &Out, Location L) {
 }
 
 size_t LocationHash::operator()(const Location &L) const {
-  hash_code Hash = hash_combine(L.Root, L.RootItem.Number);
-  for (const Step &S : L.Path)
-    Hash = hash_combine(Hash, S.Type, S.Index, S.Class, S.Item.Number);
-  return Hash;
+  return hash_combine(L.Root, L.RootItem.Number, L.Path.address());
 }
 
 } // namespace tpc

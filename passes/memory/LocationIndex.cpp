@@ -13,7 +13,7 @@ LocationIndex::Slot LocationIndex::slotOf(const Value *Root,
 }
 
 void LocationIndex::add(unsigned N, const Location &L, size_t Steps) {
-  Slot Here = slotOf(L.Root, ArrayRef(L.Path).take_front(Steps));
+  Slot Here = slotOf(L.Root, L.Path.steps().take_front(Steps));
   Exact[{Here, L.Root}].push_back(N);
   if (L.Root && Steps && Alias.isReachable(L))
     Rooted[Here].push_back(N);

@@ -72,9 +72,25 @@ public:
   void add(unsigned N, const Location &Object);
   /// Calls \p F with the numbers of the objects that \p L can be, or be in.
   template <typename Fn> void eachAround(const Location &L, Fn F) const {
+    eachOnPath(L, F);
+    if (auto Class = classAround(L))
+      eachWith(*Class, F);
+  }
+  /// The same without the objects that it can be in only because they have its
+  /// class.
+  template <typename Fn> void eachOnPath(const Location &L, Fn F) const {
     ByLocation.eachAround(L, F);
-    if (!L.Root && !L.Path.empty())
-      eachOf(ByClass, L.Path[0].Type, F);
+  }
+  /// Calls \p F with the numbers of the objects that are of the class number
+  /// \p Class or have a part of it; none is too many.
+  template <typename Fn> void eachWith(unsigned Class, Fn F) const {
+    eachOf(ByClass, Class, F);
+  }
+  /// The class of whatever object \p L is in; none if \p L has a root.
+  static std::optional<unsigned> classAround(const Location &L) {
+    if (L.Root || L.Path.empty())
+      return std::nullopt;
+    return L.Path[0].Type;
   }
 
 private:
@@ -113,7 +129,7 @@ private:
 
 template <typename Fn>
 void LocationIndex::eachAt(const Location &L, size_t Steps, Fn F) const {
-  Slot Here = slotOf(L.Root, llvm::ArrayRef(L.Path).take_front(Steps));
+  Slot Here = slotOf(L.Root, L.Path.steps().take_front(Steps));
   eachOf(Exact, std::pair(Here, L.Root), F);
   if (!L.Root)
     eachOf(Rooted, Here, F);

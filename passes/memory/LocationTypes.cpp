@@ -95,7 +95,7 @@ void LocationTypes::enterField(Location &L, StructType *T, unsigned Field) {
 
 void LocationTypes::enterElement(Location &L) const {
   if (isa_and_nonnull<ArrayType>(typeAt(L)))
-    L.item() = {0};
+    L.setItem({0});
 }
 
 void LocationTypes::enterScalar(Location &L) {
@@ -112,7 +112,7 @@ void LocationTypes::extend(Location &L, ArrayRef<Step> Steps) const {
   if (L.isElement())
     Steps = Steps.drop_while(
         [&](const Step &S) { return Numbers.isStandard(S.Type); });
-  L.Path.append(Steps.begin(), Steps.end());
+  L.Path.append(Steps);
 }
 
 /// If \p L is in an array, moves it by \p Index objects of type \p Unit, each
@@ -128,16 +128,16 @@ void LocationTypes::moveOn(Location &L, const Value *Index, Type *Unit) const {
     return;
   bool Known = By && By->getValue().getSignificantBits() <= 32 && Bytes &&
                Own % Bytes == 0 && Own / Bytes <= Nth::Most;
-  L.item() = Known ? L.item().plus(By->getSExtValue() *
-                                   static_cast<int64_t>(Own / Bytes))
-                   : Nth{Nth::Any};
+  L.setItem(Known ? L.item().plus(By->getSExtValue() *
+                                  static_cast<int64_t>(Own / Bytes))
+                  : Nth{Nth::Any});
 }
 
 bool LocationTypes::anyElement(Location &L) const {
   Type *Declared = declaredTypeAt(L);
   if (!isa_and_nonnull<ArrayType>(Declared))
     return false;
-  L.item() = {Nth::Any};
+  L.setItem({Nth::Any});
   return !elementOf(Declared)->isStructTy();
 }
 
@@ -181,7 +181,7 @@ bool LocationTypes::descend(Location &L, int64_t &Offset, Type *Until) {
       enterElement(L);
       if (L.item().isNumber() && L.item().Number + By < 0)
         return false;
-      L.item() = L.item().plus(By);
+      L.setItem(L.item().plus(By));
       Offset -= By * Bytes;
     }
     auto *Class = dyn_cast<StructType>(T);
@@ -222,7 +222,7 @@ void LocationTypes::addScalarsOf(const Location &L, Type *T, int64_t At,
          Out.size() < MaxLocations;
          Here += Bytes) {
       Location Inner = L;
-      Inner.item() = Nth().plus(Here / Bytes);
+      Inner.setItem(Nth().plus(Here / Bytes));
       addScalarsOf(Inner, Element, At + Here, Size, Out);
     }
     return;
@@ -258,7 +258,7 @@ bool LocationTypes::addScalars(Location L, uint64_t Size,
       uint64_t Bytes =
           Layout.getTypeAllocSize(elementOf(Whole)).getFixedValue();
       At += L.item().isNumber() ? L.item().Number * Bytes : 0;
-      L.item() = {};
+      L.setItem({});
       if (!L.isField() ||
           At + Size <= Layout.getTypeAllocSize(Whole).getFixedValue()) {
         addScalarsOf(L, Whole, -static_cast<int64_t>(At), Size, Out);

@@ -82,8 +82,8 @@ private:
   llvm::SmallVector<PointerStore, 0> PointerStores;
   LocationIndex PointerStoreIndex;
   llvm::SmallVector<Content, 0> Contents;
-  LocationMap<unsigned>
-      ContentIndex[2]; ///< of all stores, and of Unrooted ones
+  /// Of all stores, and of Unrooted ones.
+  LocationMap<unsigned> ContentIndex[2];
   llvm::DenseMap<const llvm::Function *, Returned> Results;
   /// Objects that hold pointers to a container's elements (iterators that are
   /// returned in memory), with the container.

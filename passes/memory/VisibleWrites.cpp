@@ -215,7 +215,7 @@ SmallVector<Instruction *, 8> VisibleWrites::writesInto(const Location &L,
     if (!Local) {
       auto Way = Alias.partOf(L, Where);
       auto *It = find_if(Parts, [&](const Part &P) {
-        return Way && Location::areSame(P.Way, *Way);
+        return Way && StepPath::areSame(P.Way, *Way);
       });
       std::optional<Reaching::Variable> Read;
       if (It != Parts.end())

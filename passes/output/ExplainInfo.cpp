@@ -13,7 +13,7 @@ using namespace llvm;
 namespace tpc {
 
 /// Nobody reads more, and every diagnosis reads the file. All of them are
-/// counted.
+/// counted, and each parameter has one of each kind.
 static cl::opt<unsigned> MaxListed(
     "tpc-max-listed", cl::Hidden, cl::init(200),
     cl::desc("Blind spots and unexposed comparisons that are listed"));
@@ -174,8 +174,12 @@ ListedPlaces ExplainInfo::notExposed(ArrayRef<SourcePlace> Comparisons) {
   for (const SourcePlace &P : Comparisons)
     if (auto Known = All.at({P.File, P.Line, P.Column}, P.Source))
       Exposed.insert(*Known);
+  DenseSet<unsigned> Listed;
   for (const Listing::Entry &E : Sorted) {
-    if (Exposed.contains({E.Place, E.Name}) || Out.Count++ >= MaxListed)
+    if (Exposed.contains({E.Place, E.Name}))
+      continue;
+    bool IsFirst = Listed.insert(E.Name).second;
+    if (Out.Count++ >= MaxListed && !IsFirst)
       continue;
     const ParameterComparison &Compared = *Gathered.Others[E.Index].Compared;
     json::Object O = placed(Words.userPlace(Compared.place()));
@@ -201,10 +205,13 @@ ListedPlaces ExplainInfo::blindSpots() {
       All.add(S.Kind, Loc, S.Read, Index);
   }
   ListedPlaces Out;
+  DenseSet<std::pair<unsigned, unsigned>> Listed;
   for (const Listing::Entry &E : All.sorted()) {
-    if (Out.Count++ >= MaxListed)
-      continue;
     const BlindSpot &S = Spots[E.Index];
+    bool IsFirst =
+        S.Read != BlindSpot::None && Listed.insert({S.Kind, E.Name}).second;
+    if (Out.Count++ >= MaxListed && !IsFirst)
+      continue;
     json::Object O = placed(Words.userPlace(*S.At));
     O["kind"] = S.kindName();
     O["parameter"] = S.Read == BlindSpot::None

@@ -112,6 +112,8 @@ json::Array Describer::parameters() const {
     O["api"] = R.Row->Function;
     O["type"] = R.Type;
     O["default"] = R.Default;
+    if (!R.Key.empty() && !R.Row->Resolve.empty())
+      O["key"] = R.Key;
     List.push_back(std::move(O));
   }
   return List;
@@ -162,6 +164,8 @@ static json::Value describeTransform(const Transform &T) {
                         {"scale", T.Scale},
                         {"offset", T.Offset},
                         {"text", T.text()}};
+  case Transform::WithVariables:
+    return json::Object{{"kind", "expression"}, {"text", T.text()}};
   case Transform::Expression:
     return json::Object{
         {"kind", "expression"}, {"text", T.text()}, {"tree", T.tree()}};

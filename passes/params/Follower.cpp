@@ -96,9 +96,20 @@ const Follower::Stored &Follower::describeStore(StoreInst &Store) {
   return *Known;
 }
 
+/// True if \p To is one variable that holds a threshold, whatever it was
+/// computed from: not an element of an array or of a container, which holds
+/// data.
+static bool keepsFormula(const Follower::Stored &To) {
+  return To.Targets == 1 && all_of(To.Written, [](const ScalarPart &P) {
+           return !P.Size && P.Where.isOne() && !P.Where.isElement();
+         });
+}
+
 /// The value goes on to the loads of the variable that it is stored to.
 void Follower::store(const State &S, StoreInst &Store) {
   const Stored &To = describeStore(Store);
+  if (S.How.Variables && (isMovedOn(Store) || !keepsFormula(To)))
+    return stopAt(ValueEnd::Mixed, &Store);
   if (To.Targets == 0)
     stopAt(ValueEnd::UnknownPointer, &Store);
   else if (To.Targets > MaxTargets)
@@ -194,12 +205,19 @@ bool Follower::followRepacked(const State &S, Use &U) {
 /// variables, arguments, results. False if \p U does something else with it.
 bool Follower::carry(const State &S, Use &U) {
   auto *I = cast<Instruction>(U.getUser());
+  // A formula belongs to the function that computes it: what it hands on or
+  // returns, or merges with other values, is data.
+  if (S.How.Variables && (isa<PHINode, SelectInst, ReturnInst>(I) ||
+                          (isa<CallBase>(I) && !isCopy(*I, U))))
+    return false;
   if (isa<CastInst>(I) || isa<FreezeInst>(I) || isCopy(*I, U)) {
     push({I, S.How, S.Path, S.Direct, S.In, S.Origin});
     return true;
   }
   if (isa<PHINode>(I) || (isa<SelectInst>(I) && U.getOperandNo() != 0)) {
-    push({I, S.How, S.Path, false, S.In, S.Origin ? S.Origin : S.V});
+    Transform How = S.How;
+    How.Merged = true;
+    push({I, How, S.Path, false, S.In, S.Origin ? S.Origin : S.V});
     return true;
   }
   if (auto *Store = dyn_cast<StoreInst>(I)) {

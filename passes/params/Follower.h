@@ -4,6 +4,7 @@
 
 #include "Rules.h"
 #include "calls/SimpleCallGraph.h"
+#include "memory/Variables.h"
 #include "memory/VisibleWrites.h"
 #include "params/ParamCallFinder.h"
 #include "params/ParamUsageFinder.h"
@@ -35,9 +36,18 @@ public:
         Accesses(AM.getResult<ClassObjectAccess>(M)),
         Writes(AM.getResult<VisibleWritesAnalysis>(M)),
         Reads(AM.getResult<ParamCallFinder>(M)),
-        Rules(AM.getResult<RuleAnalysis>(M)), Texts(M, Pointers, Rules) {}
+        Rules(AM.getResult<RuleAnalysis>(M)),
+        Names(AM.getResult<LocationTypesAnalysis>(M)),
+        Texts(M, Pointers, Accesses, Rules) {}
 
   ParameterUsage run();
+
+  /// What a store writes to, whatever the value.
+  struct Stored {
+    size_t Targets;
+    llvm::SmallVector<llvm::LoadInst *, 8> Loads;
+    llvm::SmallVector<ScalarPart, 1> Written;
+  };
 
 private:
   struct State {
@@ -70,7 +80,8 @@ private:
     }
 
   private:
-    std::array<llvm::SmallVector<State, 16>, Transform::Expression + 1> ByKind;
+    std::array<llvm::SmallVector<State, 16>, Transform::WithVariables + 1>
+        ByKind;
   };
 
   void followRead(unsigned N);
@@ -79,6 +90,7 @@ private:
   void followUse(const State &S, llvm::Use &U, unsigned Read);
   void addComparison(const State &S, llvm::CmpInst &Compare, unsigned Operand,
                      unsigned Read);
+  void dropOwnSides(size_t From);
   void addFlag(const State &S, llvm::Value *V, Decision D, unsigned Read,
                bool IsOperand = false);
   void followText(unsigned N);
@@ -89,12 +101,6 @@ private:
   void load(const State &S, llvm::Instruction &Write,
             llvm::ArrayRef<ScalarPart> Written,
             llvm::ArrayRef<llvm::LoadInst *> Loads);
-  /// What a store writes to, whatever the value.
-  struct Stored {
-    size_t Targets;
-    llvm::SmallVector<llvm::LoadInst *, 8> Loads;
-    llvm::SmallVector<ScalarPart, 1> Written;
-  };
   const Stored &describeStore(llvm::StoreInst &Store);
   void store(const State &S, llvm::StoreInst &Store);
   void stopAt(ValueEnd::KindTy Kind, llvm::Instruction *At);
@@ -117,6 +123,7 @@ private:
   VisibleWrites &Writes;
   const ParamCallFinder::Result &Reads;
   const RuleMatches &Rules;
+  const VariableNames Names;
   const TextUsage Texts;
 
   // Very many values may reach one place.

@@ -3,6 +3,7 @@
 
 #include "params/Transform.h"
 
+#include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/IR/GlobalVariable.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Operator.h"
@@ -30,6 +31,45 @@ bool isSameVariable(const Value *A, const Value *B) {
   return G && H && G->getSourceElementType() == H->getSourceElementType() &&
          equal(G->indices(), H->indices()) &&
          isSameVariable(G->getPointerOperand(), H->getPointerOperand());
+}
+
+/// Calls \p Found with the values from which \p V is computed, until it returns
+/// true; true if it did.
+static bool anySource(const Value *V, function_ref<bool(const Value *)> Found) {
+  constexpr unsigned Most = 64; // More are no formula that somebody wrote.
+  SmallVector<const Value *, 8> Work{V};
+  SmallPtrSet<const Value *, 16> Seen;
+  while (!Work.empty() && Seen.size() < Most) {
+    const Value *Next = Work.pop_back_val();
+    if (!Seen.insert(Next).second)
+      continue;
+    if (Found(Next))
+      return true;
+    const auto *Call = dyn_cast<IntrinsicInst>(Next);
+    if (isa<BinaryOperator, UnaryOperator, CastInst, PHINode, SelectInst,
+            FreezeInst>(Next) ||
+        (Call && Call->doesNotAccessMemory()))
+      append_range(Work, cast<User>(Next)->operands());
+  }
+  return false;
+}
+
+bool isComputedFrom(const Value *V, const Value *Source) {
+  const auto *Load = dyn_cast<LoadInst>(Source);
+  return anySource(V, [&](const Value *From) {
+    const auto *Other = dyn_cast<LoadInst>(From);
+    return From == Source || (Load && Other &&
+                              isSameVariable(Load->getPointerOperand(),
+                                             Other->getPointerOperand()));
+  });
+}
+
+bool isMovedOn(const StoreInst &Store) {
+  return anySource(Store.getValueOperand(), [&](const Value *From) {
+    const auto *Load = dyn_cast<LoadInst>(From);
+    return Load &&
+           isSameVariable(Load->getPointerOperand(), Store.getPointerOperand());
+  });
 }
 
 namespace {

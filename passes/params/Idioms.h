@@ -2,7 +2,8 @@
 //
 // Recognises std::min, std::max and std::clamp after inlining, and the code
 // that people write instead: control flow merges two values, and a comparison
-// of the same two chooses. Also squares whose factors are computed twice.
+// of the same two chooses. Also squares whose factors are computed twice, and
+// values that accumulate.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_IDIOMS_H
@@ -27,6 +28,14 @@ std::optional<Choice> choiceOf(const llvm::Instruction &Merge);
 /// by how they are computed. A pointer that is read twice counts as the same
 /// pointer.
 bool isSameVariable(const llvm::Value *A, const llvm::Value *B);
+
+/// True if \p V is computed from \p Source, or from the variable that it loads,
+/// in one function.
+bool isComputedFrom(const llvm::Value *V, const llvm::Value *Source);
+
+/// True if \p Store moves a variable on: what it stores is computed from what
+/// the variable held before.
+bool isMovedOn(const llvm::StoreInst &Store);
 
 /// Whether \p I multiplies a value with itself, even if it is computed twice:
 /// 1, or -1 if one factor is negated; otherwise 0.

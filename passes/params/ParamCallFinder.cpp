@@ -1,11 +1,14 @@
 //===- ParamCallFinder.cpp ------------------------------------------------===//
 #include "params/ParamCallFinder.h"
 
+#include "Options.h"
 #include "params/ParameterObjects.h"
 #include "params/Texts.h"
 #include "support/Names.h"
 #include "support/Print.h"
+#include "support/SourcePath.h"
 
+#include "llvm/ADT/StringExtras.h"
 #include "llvm/IR/Constants.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/Module.h"
@@ -65,6 +68,18 @@ static json::Value defaultOf(const CallBase &Call, const Rule &R,
   return C ? jsonOf(*C, Type) : nullptr;
 }
 
+static std::string keyOf(const ParameterRead &Read, const Options &Opts) {
+  const DILocation *Loc = Read.Call->getDebugLoc();
+  if (!Loc)
+    return "";
+  return uuidOf(join(
+      std::initializer_list<std::string>{
+          "read", Opts.Package, Opts.LinkUnit, Opts.relative(pathOf(Loc)),
+          functionNameFor(*Loc), std::to_string(Loc->getLine()),
+          std::to_string(Loc->getColumn()), Read.Name},
+      "\n"));
+}
+
 ParamCallFinder::Result ParamCallFinder::run(Module &M,
                                              ModuleAnalysisManager &AM) {
   const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
@@ -78,7 +93,10 @@ ParamCallFinder::Result ParamCallFinder::run(Module &M,
                  std::move(Default), argument(Call, Row, Row.Value)});
   });
   findAccessors(M, AM, R);
-  findConfigs(M, AM, R);
+  findConfigs(M, AM, Known, R);
+  const Options &Opts = AM.getResult<OptionsAnalysis>(M);
+  for (ParameterRead &Read : R)
+    Read.Key = keyOf(Read, Opts);
   return R;
 }
 

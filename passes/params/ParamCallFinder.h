@@ -26,6 +26,10 @@ struct ParameterRead {
   /// Where the value first appears, if it is neither the result nor written by
   /// the call.
   llvm::SmallVector<llvm::Value *, 1> Values = {};
+  std::string Field = {}; ///< for a field of a class: its name
+  /// Identifies the read where its name is reported; empty without debug
+  /// information. Reads of one name at one place share it.
+  std::string Key = {};
 };
 
 /// \p C, a number of the C++ type \p Type, as JSON; null if it is not a number.

@@ -10,6 +10,7 @@
 #include "params/TextUsage.h"
 #include "support/Print.h"
 
+#include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Module.h"
 
@@ -123,6 +124,19 @@ SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome,
   return Found;
 }
 
+/// True if \p Compare, of which one operand is computed as \p How says, has no
+/// threshold: a formula is compared with a constant, or with a value that is in
+/// the formula.
+static bool hasNoThreshold(const CmpInst &Compare, unsigned Operand,
+                           const Transform &How) {
+  if (!How.Variables)
+    return false;
+  const Value *Other = Compare.getOperand(1 - Operand);
+  if (const auto *C = dyn_cast<Constant>(Other))
+    return !How.isDifference() || !C->isZeroValue();
+  return isComputedFrom(Compare.getOperand(Operand), Other);
+}
+
 /// Adds a flag: \p V, computed from what \p S follows, decides \p D by itself.
 void Follower::addFlag(const State &S, Value *V, Decision D, unsigned Read,
                        bool IsOperand) {
@@ -161,7 +175,7 @@ void Follower::addComparison(const State &S, CmpInst &Compare, unsigned Operand,
   if (Compare.getOperand(0) == Compare.getOperand(1) ||
       Compare.getOperand(0)->getType()->isPtrOrPtrVectorTy())
     return;
-  if (!comparesValues(Compare))
+  if (!comparesValues(Compare) || hasNoThreshold(Compare, Operand, S.How))
     return stopAt(ValueEnd::Mixed, &Compare);
   if (S.How.kind() == Transform::None && asksForNonZero(Compare, Operand)) {
     for (const Decision &D : followOutcome(&Compare, S.Path))
@@ -181,7 +195,8 @@ void Follower::addComparison(const State &S, CmpInst &Compare, unsigned Operand,
 /// Adds \p Predicate, which the value itself decides.
 void Follower::addDecision(const State &S, Instruction &Predicate,
                            unsigned Read) {
-  if (S.How.kind() == Transform::None || isa<SwitchInst>(Predicate))
+  if (S.How.kind() == Transform::None ||
+      (isa<SwitchInst>(Predicate) && !S.How.Variables))
     addFlag(S, S.Origin ? S.Origin : S.V, {&Predicate, !S.Origin, S.Way}, Read,
             /*IsOperand=*/S.Origin != nullptr);
 }
@@ -243,10 +258,34 @@ void Follower::followUse(const State &S, Use &U, unsigned Read) {
     }
   if (carry(S, U))
     return;
-  if (std::optional<Transform> T = apply(S.How, *I, S.V, squareOf(*I)))
+  auto Name = [&](const Value *V) { return Names.nameOf(V, Pointers); };
+  std::optional<Transform> T = apply(S.How, *I, S.V, squareOf(*I), Name);
+  bool Accumulates =
+      T && T->Variables && any_of(I->operands(), [&](const Use &Other) {
+        return Other.get() != S.V && isComputedFrom(Other, I);
+      });
+  if (T && !Accumulates)
     push({I, std::move(*T), S.Path, S.Direct});
   else if (!isa<IntrinsicInst>(I) || !I->getType()->isVoidTy())
     stopAt(ValueEnd::Mixed, I);
+}
+
+/// Drops those of the comparisons from \p From on whose value was combined with
+/// other variables, if the other side has the same parameter in it: it cancels
+/// out, or moves both.
+void Follower::dropOwnSides(size_t From) {
+  auto All = drop_begin(Usage.Comparisons, From);
+  SmallPtrSet<const CmpInst *, 8> Sides[2];
+  for (const ParameterComparison &C : All)
+    if (C.Compare)
+      Sides[C.Operand].insert(C.Compare);
+  Usage.Comparisons.erase(remove_if(All,
+                                    [&](const ParameterComparison &C) {
+                                      return C.Compare && C.How.Variables &&
+                                             Sides[1 - C.Operand].contains(
+                                                 C.Compare);
+                                    }),
+                          Usage.Comparisons.end());
 }
 
 /// True for types whose values are compared as numbers.
@@ -315,6 +354,7 @@ void Follower::followRead(unsigned N) {
     for (Use &U : S.V->uses())
       followUse(S, U, N);
   }
+  dropOwnSides(Before);
   if (Usage.Comparisons.size() == Before)
     forgetHops(HopsBefore);
 }

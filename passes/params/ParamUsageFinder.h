@@ -2,8 +2,9 @@
 //
 // Thesis A.11: follows each parameter read forward, through copies, casts,
 // variables, arguments and results, to the comparisons, and from those to the
-// predicates. Arithmetic with constants is recorded with the value. A value
-// that is combined with another variable is lost, and counted.
+// predicates. Arithmetic is recorded with the value. A value is lost, and
+// counted, where it is accumulated, or computed with other variables and then
+// compared with a constant: no threshold is left.
 //
 // Calls are matched: a value that entered a function by one call leaves it by
 // the same call.
@@ -48,10 +49,9 @@ struct Decision {
 /// comparison with it, is not followed, or not with certainty.
 struct ValueEnd {
   enum KindTy {
-    Mixed,    ///< it was combined with another variable, or went where nobody
-              ///< looks
-    NoNumber, ///< the type of the parameter is not followed
-    Unread,   ///< it was stored, and nothing loads it
+    Mixed,          ///< it was accumulated, or went where nobody looks
+    NoNumber,       ///< the type of the parameter is not followed
+    Unread,         ///< it was stored, and nothing loads it
     UnknownPointer, ///< it was stored to an unknown place
     ManyTargets,    ///< it was stored to one of very many variables
     Outcome,        ///< the outcome of its comparison went where nobody looks

@@ -7,6 +7,7 @@
 #include "params/Texts.h"
 #include "support/Names.h"
 
+#include "llvm/ADT/MapVector.h"
 #include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/ADT/StringSet.h"
 #include "llvm/IR/Module.h"
@@ -198,21 +199,35 @@ static std::map<unsigned, Field> fieldsOf(Module &M, StringRef Name,
   return Fields;
 }
 
-void findConfigs(Module &M, ModuleAnalysisManager &AM,
+void findConfigs(Module &M, ModuleAnalysisManager &AM, Texts &Known,
                  std::vector<ParameterRead> &Reads) {
   const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
-  StringSet<> Done;
+  // The first call for each class, and the namespace of all its servers.
+  struct Served {
+    CallBase *Call;
+    const Rule *Row;
+    std::string Namespace;
+  };
+  MapVector<std::string, Served, std::map<std::string, unsigned>> Classes;
   forEachCall(M, Rules, Rule::Config, [&](CallBase &Call, const Rule &Row) {
     std::string Class = classArgument(*Call.getCalledFunction());
-    if (Class.empty() || !Done.insert(Class).second)
+    if (Class.empty())
       return;
+    std::string Namespace = Known.namespaceOf(Call, Row);
+    auto [It, New] = Classes.insert({Class, {&Call, &Row, Namespace}});
+    // Servers of one class pass their values to the same fields.
+    if (It->second.Namespace != Namespace)
+      It->second.Namespace = DynamicName;
+  });
+  for (const auto &[Class, S] : Classes) {
     std::map<unsigned, Field> Fields = fieldsOf(M, Class, AM);
     findDefaults(M, Class, AM, Fields);
     for (auto &[Index, F] : Fields)
-      Reads.push_back({&Call, &Row, F.Name.empty() ? DynamicName : F.Name,
-                       F.Type, std::move(F.Default), nullptr,
-                       std::move(F.Loads)});
-  });
+      Reads.push_back(
+          {S.Call, S.Row,
+           joinNames(S.Namespace, F.Name.empty() ? DynamicName : F.Name),
+           F.Type, std::move(F.Default), nullptr, std::move(F.Loads), F.Name});
+  }
 }
 
 } // namespace tpc

@@ -13,6 +13,8 @@
 
 namespace tpc {
 
+class Texts;
+
 /// Adds to each read of \p Reads that makes an object the values that are taken
 /// out of it. A value taken out of an object that no read made becomes a read
 /// of its own, with an unknown name.
@@ -20,8 +22,8 @@ void findAccessors(llvm::Module &M, llvm::ModuleAnalysisManager &AM,
                    std::vector<ParameterRead> &Reads);
 
 /// Adds to \p Reads the fields of the classes that callbacks get, if user code
-/// reads them.
-void findConfigs(llvm::Module &M, llvm::ModuleAnalysisManager &AM,
+/// reads them; \p Known finds the namespace of the server.
+void findConfigs(llvm::Module &M, llvm::ModuleAnalysisManager &AM, Texts &Known,
                  std::vector<ParameterRead> &Reads);
 
 } // namespace tpc

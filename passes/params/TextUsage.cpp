@@ -20,8 +20,9 @@ static cl::opt<unsigned>
     MaxObjects("tpc-max-text-copies", cl::Hidden, cl::init(16),
                cl::desc("Objects that one text is copied to"));
 
-TextUsage::TextUsage(Module &M, PointsTo &Pointers, const RuleMatches &Rules)
-    : Pointers(Pointers) {
+TextUsage::TextUsage(Module &M, PointsTo &Pointers, AccessIndex &Accesses,
+                     const RuleMatches &Rules)
+    : Pointers(Pointers), Accesses(Accesses) {
   forEachCall(M, Rules, Rule::Text, [&](CallBase &Call, const Rule &Row) {
     Use U{&Call, &Row, {}};
     for (unsigned N = 0; N < std::min(2U, Call.arg_size()); ++N)
@@ -44,7 +45,9 @@ SmallVector<CallBase *, 2> TextUsage::numbersFrom(const CallBase &Into,
   Locations Objects = Pointers.handed(objectOf(Into, Row), /*IsOne=*/true);
   for (const auto &[Call, From] : Numbers)
     if (any_of(From, [&](const Location &L) {
-          return any_of(Objects, [&](const Location &O) { return L.mayBe(O); });
+          return any_of(Objects, [&](const Location &O) {
+            return Accesses.reaches(O, L);
+          });
         }))
       Found.push_back(Call);
   return Found;

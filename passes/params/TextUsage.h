@@ -10,6 +10,7 @@
 #define TPC_TEXTUSAGE_H
 
 #include "Rules.h"
+#include "memory/AccessIndex.h"
 #include "memory/PointsTo.h"
 
 namespace tpc {
@@ -22,7 +23,8 @@ struct TextComparison {
 
 class TextUsage {
 public:
-  TextUsage(llvm::Module &M, PointsTo &Pointers, const RuleMatches &Rules);
+  TextUsage(llvm::Module &M, PointsTo &Pointers, AccessIndex &Accesses,
+            const RuleMatches &Rules);
 
   struct Found {
     llvm::SmallVector<TextComparison, 4> Comparisons;
@@ -32,7 +34,7 @@ public:
   Found comparisonsOf(const llvm::Value *Object) const;
 
   /// The calls that take the number out of the object again into which \p Into,
-  /// a call that a row of `held` describes, puts it.
+  /// a call that a row of `held` describes, puts it, or out of a copy.
   llvm::SmallVector<llvm::CallBase *, 2> numbersFrom(const llvm::CallBase &Into,
                                                      const Rule &Row) const;
 
@@ -43,6 +45,7 @@ private:
     llvm::SmallVector<Locations, 2> Operands; ///< of its first two
   };
   PointsTo &Pointers;
+  AccessIndex &Accesses;
   std::vector<Use> Uses;
   std::vector<std::pair<llvm::CallBase *, Locations>> Numbers;
 };

@@ -295,11 +295,16 @@ std::string Texts::textAt(const Value *Pointer, const Instruction &At) {
 
 std::string Texts::nameOf(const CallBase &Call, const Rule &Row) {
   Known Name = knownAt(argument(Call, Row, Row.Name), Call);
+  return Name.Absolute ? Name.Text
+                       : joinNames(namespaceOf(Call, Row), Name.Text);
+}
+
+std::string Texts::namespaceOf(const CallBase &Call, const Rule &Row) {
   const Value *Handle = Row.Handle ? objectOf(Call, Row) : nullptr;
-  if (!Handle || Name.Absolute)
-    return Name.Text;
+  if (!Handle)
+    return "";
   Steps = 0;
-  return joinNames(find(Handle, Call, Kind::Handle).Text, Name.Text);
+  return find(Handle, Call, Kind::Handle).Text;
 }
 
 const Constant *Texts::constantOf(const Value *V) {

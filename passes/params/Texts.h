@@ -55,6 +55,10 @@ public:
   /// its handle if the row says so.
   std::string nameOf(const llvm::CallBase &Call, const Rule &Row);
 
+  /// The namespace of the handle that the object of \p Call, described by
+  /// \p Row, was made with; empty if no code in the link unit makes it.
+  std::string namespaceOf(const llvm::CallBase &Call, const Rule &Row);
+
   /// The constant that \p V is. Also if \p V is an argument for which all calls
   /// pass the same constant, or a temporary that holds it. Null if there is
   /// none.

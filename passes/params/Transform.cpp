@@ -5,6 +5,7 @@
 #include "llvm/IR/Constants.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/IntrinsicInst.h"
+#include "llvm/Support/CommandLine.h"
 
 #include <charconv>
 #include <cmath>
@@ -12,6 +13,13 @@
 using namespace llvm;
 
 namespace tpc {
+
+/// What is computed from more values than this is no threshold that somebody
+/// has set.
+static cl::opt<unsigned> MaxVariables(
+    "tpc-max-variables", cl::Hidden, cl::init(2),
+    cl::desc("Operands other than constants in the arithmetic between a "
+             "parameter and a comparison"));
 
 std::string shortest(double X) {
   char Buffer[32];
@@ -24,6 +32,8 @@ std::string shortest(double X) {
 //===----------------------------------------------------------------------===//
 
 Transform::KindTy Transform::kind() const {
+  if (Variables)
+    return WithVariables;
   if (Inner)
     return Expression;
   return Scale == 1 && Offset == 0 ? None : Affine;
@@ -48,14 +58,31 @@ void Transform::add(double Term) {
 
 void Transform::call(StringRef Op, std::optional<double> Constant, bool First) {
   Transform Outer;
+  Outer.Variables = Variables;
+  Outer.Merged = Merged;
   Outer.Inner = std::make_shared<const Application>(
       Application{Op.str(), std::move(*this), Constant, First});
   *this = std::move(Outer);
 }
 
+void Transform::combine(StringRef Op, std::string Name, bool First) {
+  Transform Outer;
+  Outer.Variables = Variables + 1;
+  Outer.Inner = std::make_shared<const Application>(Application{
+      Op.str(), std::move(*this), std::nullopt, First, std::move(Name)});
+  *this = std::move(Outer);
+}
+
+bool Transform::isDifference() const {
+  return Inner && Inner->Op == "-" && Offset == 0;
+}
+
 /// The sign between two operands; empty for the name of a function.
 static StringRef signOf(const Application &A) {
   return StringSwitch<StringRef>(A.Op)
+      .Case("+", " + ")
+      .Case("-", " - ")
+      .Case("*", " * ")
       .Case("/", " / ")
       .Case("rem", " rem ")
       .Case("shr", " >> ")
@@ -67,11 +94,44 @@ static bool isSquare(const Application &A) {
   return A.Op == "pow" && !A.First && A.Constant == 2;
 }
 
-/// The text of \p T as an operand of a sign.
-static std::string operandText(const Transform &T) {
-  bool Plain = T.Scale == 1 && T.Offset == 0 &&
-               (!T.Inner || (signOf(*T.Inner).empty() && !isSquare(*T.Inner)));
-  return Plain ? T.text() : "(" + T.text() + ")";
+namespace {
+/// How strongly the operands of a text hold together.
+enum Level { Other, Sum, Product, Single };
+} // namespace
+
+static Level levelOf(const Transform &T) {
+  if (T.Offset != 0)
+    return Sum;
+  if (T.Scale != 1)
+    return Product;
+  if (!T.Inner)
+    return Single;
+  if (isSquare(*T.Inner))
+    return Product;
+  return StringSwitch<Level>(signOf(*T.Inner))
+      .Case("", Single)
+      .Case(" + ", Sum)
+      .Case(" - ", Sum)
+      .Case(" * ", Product)
+      .Case(" / ", Product)
+      .Default(Other);
+}
+
+/// The text of \p T as an operand that needs \p Least.
+static std::string operandText(const Transform &T, Level Least = Single) {
+  return levelOf(T) >= Least ? T.text() : "(" + T.text() + ")";
+}
+
+/// What the first operand of \p A, between signs, needs.
+static Level leastOf(const Application &A) {
+  if (A.Op == "+" || A.Op == "-")
+    return A.First ? Product : Sum;
+  return A.Op == "*" ? Product : Single;
+}
+
+/// The text of the second operand of \p A; empty if it has none.
+static std::string otherText(const Application &A) {
+  return A.Constant ? shortest(*A.Constant) : A.Variable;
 }
 
 static std::string applicationText(const Application &A) {
@@ -80,14 +140,14 @@ static std::string applicationText(const Application &A) {
   if (A.Op == "wrap" || A.Op == "wrapu")
     return A.Op + shortest(*A.Constant) + "(" + A.Of.text() + ")";
   if (A.Op == "div") {
-    std::string X = operandText(A.Of), C = shortest(*A.Constant);
+    std::string X = operandText(A.Of), C = otherText(A);
     return "trunc(" + (A.First ? C + " / " + X : X + " / " + C) + ")";
   }
   StringRef Sign = signOf(A);
-  if (!A.Constant)
+  std::string C = otherText(A);
+  if (C.empty())
     return A.Op + "(" + A.Of.text() + ")";
-  std::string Own = Sign.empty() ? A.Of.text() : operandText(A.Of);
-  std::string C = shortest(*A.Constant);
+  std::string Own = Sign.empty() ? A.Of.text() : operandText(A.Of, leastOf(A));
   std::string Middle = Sign.empty() ? ", " : Sign.str();
   std::string Both = A.First ? C + Middle + Own : Own + Middle + C;
   return Sign.empty() ? A.Op + "(" + Both + ")" : Both;
@@ -256,14 +316,54 @@ static StringRef functionOf(const CallBase &Call) {
       .Default("");
 }
 
+/// TPC's name for the arithmetic of \p Opcode with a value that is not
+/// constant; empty if that arithmetic is not recorded.
+static StringRef operatorOf(unsigned Opcode) {
+  switch (Opcode) {
+  case Instruction::Add:
+  case Instruction::FAdd:
+    return "+";
+  case Instruction::Sub:
+  case Instruction::FSub:
+    return "-";
+  case Instruction::Mul:
+  case Instruction::FMul:
+    return "*";
+  case Instruction::FDiv:
+    return "/";
+  case Instruction::SDiv:
+  case Instruction::UDiv:
+    return "div";
+  case Instruction::SRem:
+  case Instruction::URem:
+  case Instruction::FRem:
+    return "rem";
+  default:
+    return "";
+  }
+}
+
 static bool takesTwo(StringRef Function) {
   return Function == "pow" || Function == "rem" || Function == "min" ||
          Function == "max";
 }
 
+/// \p T combined with \p Other, which is not constant; none if that is no
+/// formula any more.
+static std::optional<Transform> withVariable(Transform T, StringRef Op,
+                                             const Value *Other, bool First,
+                                             NameOf Name) {
+  if (T.Merged || T.Variables == MaxVariables || Op.empty() ||
+      isa<Constant>(Other))
+    return std::nullopt;
+  std::string Text = Name(Other);
+  T.combine(Op, Text.empty() ? "value" : std::move(Text), First);
+  return T;
+}
+
 /// \p T after \p Call, a call of a mathematical function with \p V.
 static std::optional<Transform> applyCall(Transform T, const CallBase &Call,
-                                          const Value *V) {
+                                          const Value *V, NameOf Name) {
   StringRef Function = functionOf(Call);
   if (Function.empty())
     return std::nullopt;
@@ -273,12 +373,14 @@ static std::optional<Transform> applyCall(Transform T, const CallBase &Call,
     T.call(Function);
     return T;
   }
-  bool First = Call.getArgOperand(1) == V;
-  auto C = constantNumber(Call.getArgOperand(First ? 0 : 1));
-  if (!C)
-    return std::nullopt;
-  T.call(Function, C, First && (Function == "pow" || Function == "rem"));
-  return T;
+  bool OnRight = Call.getArgOperand(1) == V;
+  bool First = OnRight && (Function == "pow" || Function == "rem");
+  const Value *Other = Call.getArgOperand(OnRight ? 0 : 1);
+  if (auto C = constantNumber(Other)) {
+    T.call(Function, C, First);
+    return T;
+  }
+  return withVariable(std::move(T), Function, Other, First, Name);
 }
 
 /// \p Sign times the square of \p T, whichever of the two factors T is.
@@ -289,34 +391,56 @@ static void square(Transform &T, int Sign) {
   T.multiply(Sign);
 }
 
+/// The text of `A * B`, at least one of which is not constant; empty if one has
+/// no name.
+static std::string productText(const Value *A, const Value *B, NameOf Name) {
+  std::string Text;
+  for (const Value *Factor : {A, B}) {
+    auto C = constantNumber(Factor);
+    std::string Own = C ? shortest(*C) : Name(Factor);
+    if (Own.empty())
+      return "";
+    Text += (Text.empty() ? "" : " * ") + Own;
+  }
+  return Text;
+}
+
 /// \p T after a fused multiply-add.
 static std::optional<Transform> applyFma(Transform T, const CallBase &Fma,
-                                         const Value *V, int Square) {
+                                         const Value *V, int Square,
+                                         NameOf Name) {
   const Value *A = Fma.getArgOperand(0), *B = Fma.getArgOperand(1),
               *C = Fma.getArgOperand(2);
-  auto Term = constantNumber(C);
-  if (Square && Term) {
+  if (C == V) {
+    auto Factor = constantNumber(A), Other = constantNumber(B);
+    if (Factor && Other) {
+      T.add(*Factor * *Other);
+      return T;
+    }
+    return withVariable(std::move(T), "+", Factor ? B : A, /*First=*/false,
+                        [&](const Value *) { return productText(A, B, Name); });
+  }
+  if (Square) {
     square(T, Square);
+  } else if (auto Factor = constantNumber(A == V ? B : A)) {
+    T.multiply(*Factor);
+    if (*Factor == 0)
+      return std::nullopt;
+  } else if (auto Product = withVariable(std::move(T), "*", A == V ? B : A,
+                                         /*First=*/false, Name)) {
+    T = std::move(*Product);
+  } else {
+    return std::nullopt;
+  }
+  if (auto Term = constantNumber(C)) {
     T.add(*Term);
     return T;
   }
-  auto Factor = constantNumber(A == V ? B : A);
-  if (C == V) {
-    auto Other = constantNumber(B);
-    if (!Factor || !Other)
-      return std::nullopt;
-    T.add(*Factor * *Other);
-    return T;
-  }
-  if (!Factor || !Term || *Factor == 0)
-    return std::nullopt;
-  T.multiply(*Factor);
-  T.add(*Term);
-  return T;
+  return withVariable(std::move(T), "+", C, /*First=*/false, Name);
 }
 
 std::optional<Transform> apply(Transform T, const Instruction &I,
-                               const Value *V, int Square) {
+                               const Value *V, int Square, NameOf Name) {
   if (I.getOpcode() == Instruction::FNeg) {
     T.multiply(-1);
     return T;
@@ -324,8 +448,8 @@ std::optional<Transform> apply(Transform T, const Instruction &I,
   if (const auto *Call = dyn_cast<CallBase>(&I)) {
     Intrinsic::ID Id = Call->getIntrinsicID();
     return Id == Intrinsic::fmuladd || Id == Intrinsic::fma
-               ? applyFma(std::move(T), *Call, V, Square)
-               : applyCall(std::move(T), *Call, V);
+               ? applyFma(std::move(T), *Call, V, Square, Name)
+               : applyCall(std::move(T), *Call, V, Name);
   }
   if (!isa<BinaryOperator>(I))
     return std::nullopt;
@@ -335,9 +459,15 @@ std::optional<Transform> apply(Transform T, const Instruction &I,
   }
   const Value *L = I.getOperand(0), *R = I.getOperand(1);
   unsigned Opcode = I.getOpcode();
-  auto C = constantNumber(L == V ? R : L, Opcode == Instruction::UDiv ||
-                                              Opcode == Instruction::URem);
-  if (!C || !applyConstant(T, Opcode, *C, R == V))
+  const Value *Other = L == V ? R : L;
+  auto C = constantNumber(Other, Opcode == Instruction::UDiv ||
+                                     Opcode == Instruction::URem);
+  if (!C) {
+    bool Commutes = I.isCommutative();
+    return withVariable(std::move(T), operatorOf(Opcode), Other,
+                        R == V && !Commutes, Name);
+  }
+  if (!applyConstant(T, Opcode, *C, R == V))
     return std::nullopt;
   return T;
 }

@@ -1,10 +1,11 @@
 //===- Transform.h - Arithmetic between a parameter and a comparison ------===//
 //
-// A threshold that is computed from a parameter and constants (type `derived`,
+// A threshold that is computed from a parameter (type `derived`,
 // docs/reference/glossary.md#derived-comparison). The arithmetic is recorded,
 // so that a suggestion can be given in the unit of the parameter. Affine steps
 // are folded into a scale and an offset; all others become an expression over
-// x, the parameter.
+// x, the parameter. A value that is not constant is an operand with its name in
+// the source: the expression can be read, but not computed.
 //
 // The arithmetic is that of real numbers: rounding and integer overflow are not
 // modelled, except that a conversion may cut something off.
@@ -13,6 +14,7 @@
 #ifndef TPC_TRANSFORM_H
 #define TPC_TRANSFORM_H
 
+#include "llvm/ADT/STLFunctionalExtras.h"
 #include "llvm/IR/InstrTypes.h"
 #include "llvm/Support/JSON.h"
 
@@ -27,11 +29,13 @@ struct Application;
 /// The arithmetic between a parameter and a comparison: Scale * inner + Offset,
 /// where inner is x or a function of a transform.
 struct Transform {
-  enum KindTy { None, Affine, Expression };
+  enum KindTy { None, Affine, Expression, WithVariables };
   double Scale = 1, Offset = 0;
   std::shared_ptr<const Application> Inner; ///< null: x itself
   /// The bits of an integer type that the value is known to fit into; 0: none.
   unsigned Width = 0;
+  unsigned Variables = 0; ///< operands that are not constant
+  bool Merged = false; ///< x is one of several values that the program chooses
 
   KindTy kind() const;
   void multiply(double Factor);
@@ -41,13 +45,18 @@ struct Transform {
   /// \p First, the first.
   void call(llvm::StringRef Op, std::optional<double> Constant = std::nullopt,
             bool First = false);
+  /// The same with a second operand that is not constant, called \p Name.
+  void combine(llvm::StringRef Op, std::string Name, bool First = false);
+  /// True for the plain difference to a value that is not constant: compared
+  /// with zero, it compares the two.
+  bool isDifference() const;
   /// For people: `2 * sqrt(x + 1)`.
   std::string text() const;
   /// True if the only steps truncate the value to fewer bits: it is expected to
   /// fit.
   bool isNarrowing() const;
   /// The same for programs (docs/reference/formats.md): a number, "x", or a
-  /// list of an operator and its operands.
+  /// list of an operator and its operands. Not for kind WithVariables.
   llvm::json::Value tree() const;
 };
 
@@ -56,14 +65,19 @@ struct Application {
   std::string Op; ///< see docs/reference/formats.md
   Transform Of;
   std::optional<double> Constant;
-  bool First; ///< the constant is the first operand
+  bool First; ///< the constant, or the variable, is the first operand
+  std::string Variable = ""; ///< the second operand if it is not constant
 };
 
+/// The name of a value in the source; empty if it has none.
+using NameOf = llvm::function_ref<std::string(const llvm::Value *)>;
+
 /// \p T after \p I, an operation on \p V other than a cast; none unless \p I is
-/// arithmetic with constants alone. If it multiplies V with itself, \p Square
-/// is 1, or -1 if one factor is negated; otherwise 0.
+/// arithmetic. \p Name names operands that are not constant; none if there are
+/// too many of them, or the value was merged with others. If \p I multiplies V
+/// with itself, \p Square is 1, or -1 if one factor is negated; otherwise 0.
 std::optional<Transform> apply(Transform T, const llvm::Instruction &I,
-                               const llvm::Value *V, int Square);
+                               const llvm::Value *V, int Square, NameOf Name);
 
 /// \p T after \p Cast, which can change the value if the new type is narrower,
 /// or holds integers.

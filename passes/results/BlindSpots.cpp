@@ -1,7 +1,9 @@
 //===- BlindSpots.cpp -----------------------------------------------------===//
 #include "results/BlindSpots.h"
 #include "params/Texts.h"
+#include "support/Names.h"
 
+#include "llvm/ADT/STLExtras.h"
 #include "llvm/IR/IntrinsicInst.h"
 
 using namespace llvm;
@@ -20,11 +22,15 @@ StringRef BlindSpot::kindName() const {
 static std::string whyLost(const Instruction &I) {
   const auto *Call = dyn_cast<CallBase>(&I);
   if (Call && !isMultiplyAdd(I))
-    return "handed to " + Wording::callee(*Call) + ", which is not analysed";
+    return "handed to " + calleeName(*Call) + ", which is not analysed";
   if (Call || isa<BinaryOperator>(I))
     return "mixed with another variable";
   if (isa<GetElementPtrInst>(I))
     return "used as an index";
+  if (isa<StoreInst>(I))
+    return "added to what the variable held before";
+  if (isa<CmpInst>(I) && any_of(I.operands(), IsaPred<Constant>))
+    return "mixed with another variable, and compared with a constant";
   if (isa<CmpInst>(I))
     return "one of the values that are compared with a threshold";
   return std::string("used by an operation that is not followed (") +

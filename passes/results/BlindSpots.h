@@ -33,8 +33,8 @@ struct BlindSpot {
   KindTy Kind;
   const llvm::Instruction *At;
   static constexpr unsigned None = ~0U;
-  unsigned Read =
-      None; ///< number of the read; None if the blind spot is not about a read
+  /// The number of the read; None if the blind spot is not about a read.
+  unsigned Read = None;
   bool IsNoNumber = false; ///< a lost value: its type is not a number
 
   llvm::StringRef kindName() const;

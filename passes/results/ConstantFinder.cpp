@@ -3,7 +3,7 @@
 
 #include "control/IfStatements.h"
 #include "memory/Variables.h"
-#include "results/Wording.h"
+#include "support/Names.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/IR/IntrinsicInst.h"
@@ -118,7 +118,7 @@ std::string ConstantFinder::nameOf(const Value *V, bool Unsigned) const {
         return Name;
   }
   if (const auto *Call = dyn_cast<CallBase>(Source); Call && !plainNumber(V))
-    return Wording::callee(*Call);
+    return calleeName(*Call);
   const Constant *C = numberOf(V);
   if (const auto *Int = dyn_cast<ConstantInt>(C)) {
     SmallString<24> Text;

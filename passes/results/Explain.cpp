@@ -2,6 +2,7 @@
 #include "results/Explain.h"
 
 #include "control/Throws.h"
+#include "support/Names.h"
 
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/Support/CommandLine.h"
@@ -91,10 +92,9 @@ void Explainer::byReference(const Value *Pointer, const LoadInst &Load,
   for (const CallBase *Call : Calls.callers(Arg->getParent()))
     if (Arg->getArgNo() < Call->arg_size() &&
         Words.variable(Call->getArgOperand(Arg->getArgNo())) == Written)
-      return add(
-          Out, PathStep::Pass, *Call,
-          Wording::with("handed to " + Wording::function(*Arg->getParent()),
-                        "as", Words.argument(*Arg)));
+      return add(Out, PathStep::Pass, *Call,
+                 Wording::with("handed to " + shortName(*Arg->getParent()),
+                               "as", Words.argument(*Arg)));
 }
 
 /// One hop on the path from the read to the predicate.
@@ -111,12 +111,11 @@ void Explainer::hop(const Hop &H, const Comparison &C, bool IsOutcome,
   } else if (const auto *Arg = dyn_cast<Argument>(H.To)) {
     const auto &Call = *cast<CallBase>(H.Via);
     add(Out, PathStep::Pass, Call,
-        Wording::with(Outcome + "handed to " +
-                          Wording::function(*Arg->getParent()),
+        Wording::with(Outcome + "handed to " + shortName(*Arg->getParent()),
                       "as", Words.argument(*Arg)));
   } else if (isa<ReturnInst>(H.Via)) {
     add(Out, PathStep::Return, *H.Via,
-        Outcome + "returned by " + Wording::function(*H.Via->getFunction()));
+        Outcome + "returned by " + shortName(*H.Via->getFunction()));
   } else if (To == H.Via && !IsOutcome &&
              (isa<BinaryOperator>(To) || isa<UnaryOperator>(To) ||
               isa<CallBase>(To))) {
@@ -145,6 +144,8 @@ Explainer::Steps Explainer::forward(const Comparison &C) {
       hop(H, C, IsOutcome, Out);
     IsOutcome |= isa<CmpInst>(H.To);
   }
+  if (C.Predicate == C.Compare) // its outcome is exposed
+    add(Out, PathStep::Compare, *C.Compare, compared(C));
   return Out;
 }
 
@@ -157,13 +158,13 @@ void Explainer::dependence(const SliceStep &S, const SliceStep &Next,
   // A call that may throw decides like a predicate.
   std::string How;
   if (const auto *Call = dyn_cast<CallBase>(S.I))
-    How = " by whether " + Wording::callee(*Call) + " throws";
+    How = " by whether " + calleeName(*Call) + " throws";
   switch (S.Why) {
   case SliceStep::Controls: {
     if (isThrow(*Next.I))
       return Add(IsFirst ? PathStep::Decide : PathStep::Control,
-                 "decides whether " +
-                     Wording::function(*Next.I->getFunction()) + " throws");
+                 "decides whether " + shortName(*Next.I->getFunction()) +
+                     " throws");
     std::string Guarded = Words.guarded(*Next.I);
     const DILocation *Here = Words.userPlace(*S.I);
     bool SameLine =
@@ -182,21 +183,19 @@ void Explainer::dependence(const SliceStep &S, const SliceStep &Next,
   case SliceStep::Throws:
     return Add(PathStep::Return,
                isThrow(*S.I)
-                   ? "thrown by " + Wording::function(*S.I->getFunction())
-                   : "let through by " +
-                         Wording::function(*S.I->getFunction()));
+                   ? "thrown by " + shortName(*S.I->getFunction())
+                   : "let through by " + shortName(*S.I->getFunction()));
   case SliceStep::Calls:
-    return Add(PathStep::Call,
-               "calls " + Wording::function(*Next.I->getFunction()));
+    return Add(PathStep::Call, "calls " + shortName(*Next.I->getFunction()));
   case SliceStep::Mentions:
     return Add(PathStep::Call,
-               "has " + Wording::function(*Next.I->getFunction()) + " called");
+               "has " + shortName(*Next.I->getFunction()) + " called");
   case SliceStep::Passes:
     return Add(PathStep::Pass,
-               "handed to " + Wording::function(*Next.I->getFunction()));
+               "handed to " + shortName(*Next.I->getFunction()));
   case SliceStep::Returns:
     return Add(PathStep::Return,
-               "returned by " + Wording::function(*S.I->getFunction()));
+               "returned by " + shortName(*S.I->getFunction()));
   case SliceStep::Writes:
     if (const auto *Store = dyn_cast<StoreInst>(S.I))
       return Add(PathStep::Store,
@@ -207,7 +206,7 @@ void Explainer::dependence(const SliceStep &S, const SliceStep &Next,
           PathStep::Store,
           Wording::with("copied", "to", Words.object(Copy->getRawDest())));
     return Add(PathStep::Store,
-               "written by " + Wording::callee(*cast<CallBase>(S.I)));
+               "written by " + calleeName(*cast<CallBase>(S.I)));
   case SliceStep::Gives:
     if (const auto *Load = dyn_cast<LoadInst>(S.I))
       return Add(PathStep::Load,
@@ -215,7 +214,7 @@ void Explainer::dependence(const SliceStep &S, const SliceStep &Next,
                                Words.variable(Load->getPointerOperand())));
     if (const auto *Call = dyn_cast<CallBase>(S.I);
         Call && !isMultiplyAdd(*Call))
-      return Add(PathStep::Compute, "result of " + Wording::callee(*Call));
+      return Add(PathStep::Compute, "result of " + calleeName(*Call));
     if (!isa<PHINode>(S.I))
       Add(PathStep::Compute, "computed with");
     return;

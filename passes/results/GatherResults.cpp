@@ -20,7 +20,6 @@
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/Module.h"
 #include "llvm/Support/Debug.h"
-#include "llvm/Support/SHA1.h"
 
 using namespace llvm;
 
@@ -98,22 +97,6 @@ static void countOthers(GatheredResults &R) {
           });
 }
 
-/// The UUID of version 5 (RFC 4122) for \p Name, in TPC's own namespace.
-static std::string uuidOf(StringRef Name) {
-  static constexpr uint8_t Namespace[16] = {0x6b, 0x0f, 0x7a, 0x52, 0x2c, 0x9e,
-                                            0x4d, 0x61, 0x9a, 0x37, 0x8f, 0x15,
-                                            0xc3, 0x40, 0x5e, 0xd8};
-  SHA1 Hash;
-  Hash.update(ArrayRef(Namespace));
-  Hash.update(Name);
-  std::array<uint8_t, 20> Digest = Hash.final();
-  Digest[6] = (Digest[6] & 0x0f) | 0x50;
-  Digest[8] = (Digest[8] & 0x3f) | 0x80;
-  std::string Hex = toHex(ArrayRef(Digest).take_front(16), /*LowerCase=*/true);
-  return Hex.substr(0, 8) + "-" + Hex.substr(8, 4) + "-" + Hex.substr(12, 4) +
-         "-" + Hex.substr(16, 4) + "-" + Hex.substr(20);
-}
-
 namespace {
 
 /// Gives comparisons their keys. Several comparisons from one macro share a
@@ -184,6 +167,16 @@ static bool asksLibrary(const CmpInst &Compare, const RuleMatches &Rules) {
   });
 }
 
+static SmallPtrSet<const CmpInst *, 16> decidingOf(const ParameterUsage &Usage,
+                                                   const SliceResult &Slice) {
+  SmallPtrSet<const CmpInst *, 16> Deciding;
+  Comparison Ignored{};
+  for (const ParameterComparison &P : Usage.Comparisons)
+    if (P.Compare && findNearest(P, Slice, Ignored))
+      Deciding.insert(P.Compare);
+  return Deciding;
+}
+
 /// \p P without the fields that depend on its surroundings.
 static Comparison comparisonOf(const ParameterComparison &P) {
   Comparison C{};
@@ -209,13 +202,14 @@ public:
   Gatherer(Module &M, ModuleAnalysisManager &AM, Places &Own)
       : Usage(AM.getResult<ParamUsageFinder>(M)),
         Reads(AM.getResult<ParamCallFinder>(M)),
-        Slice(AM.getResult<BackwardPropagate>(M)), Own(Own),
+        Slice(AM.getResult<BackwardPropagate>(M)),
+        Deciding(decidingOf(Usage, Slice)), Own(Own),
         Both(Usage, Reads, AM.getResult<SimpleCallGraph>(M),
              AM.getResult<PointsToAnalysis>(M),
              AM.getResult<VisibleWritesAnalysis>(M),
              [&](const ParameterComparison &P) {
                Comparison Ignored{};
-               return findNearest(P, Slice, Ignored);
+               return isExposed(P, Ignored);
              }) {}
 
   GatheredResults run() {
@@ -238,11 +232,14 @@ public:
 
 private:
   std::optional<NotReported::WhyTy> gather(const ParameterComparison &P);
+  bool isExposed(const ParameterComparison &P, Comparison &Out) const;
   void add(Comparison C);
 
   const ParameterUsage &Usage;
   const ParamCallFinder::Result &Reads;
   const SliceResult &Slice;
+  /// Comparisons that a predicate in the slice depends on.
+  const SmallPtrSet<const CmpInst *, 16> Deciding;
   Places &Own;
   Sides Both;
   GatheredResults R;
@@ -253,11 +250,29 @@ private:
 
 } // namespace
 
+/// True if an exposing statement depends on \p P: on the nearest predicate that
+/// it decides or, without one, on its outcome, as in `message.data = x <
+/// limit`.
+bool Gatherer::isExposed(const ParameterComparison &P, Comparison &Out) const {
+  if (findNearest(P, Slice, Out))
+    return true;
+  if (!P.Compare || !P.TextRelation.empty() || Deciding.contains(P.Compare))
+    return false;
+  std::optional<SliceEntry> Shown = Slice.shown(P.Compare);
+  if (!Shown)
+    return false;
+  Out.Predicate = P.Compare;
+  Out.Direct = false;
+  Out.Way = Hop::None;
+  Out.Slice = *Shown;
+  return true;
+}
+
 /// Why \p P is not reported; none if it is.
 std::optional<NotReported::WhyTy>
 Gatherer::gather(const ParameterComparison &P) {
   Comparison C = comparisonOf(P);
-  if (!findNearest(P, Slice, C))
+  if (!isExposed(P, C))
     return NotReported::NotExposed;
   WithParameter.insert(P.Compare);
   if (P.Flag)

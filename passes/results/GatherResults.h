@@ -28,8 +28,8 @@ struct Comparison {
   bool IsOperand;               ///< see ParameterComparison
   Transform How;
   llvm::SmallVector<unsigned, 1> Reads; ///< all with the same parameter name
-  std::string
-      ConstantName; ///< for a constant: the name of its variable, or the number
+  /// For a constant: the name of its variable, or the number.
+  std::string ConstantName;
   SliceEntry Slice;
   unsigned Way; ///< see Decision
   unsigned OtherThresholds = 0;

@@ -148,7 +148,7 @@ bool Sides::isConfigured(const Value *V) {
 
 /// The length of the path from the read to the predicate.
 size_t Sides::lengthOf(const ParameterComparison &C) const {
-  return Usage.pathTo(C.Decisions.front().Way).size();
+  return C.Decisions.empty() ? 0 : Usage.pathTo(C.Decisions.front().Way).size();
 }
 
 /// Nobody knows whether two parameters whose names depend on the call are the
@@ -160,8 +160,9 @@ bool Sides::isSameParameter(unsigned Read, unsigned Other) const {
 }
 
 static bool decides(const ParameterComparison &C, const Instruction &P) {
-  return any_of(C.Decisions,
-                [&](const Decision &D) { return D.Predicate == &P; });
+  return C.Compare == &P || any_of(C.Decisions, [&](const Decision &D) {
+           return D.Predicate == &P;
+         });
 }
 
 bool Sides::isOtherWay(const ParameterComparison &C,
@@ -178,8 +179,15 @@ bool Sides::isOtherWay(const ParameterComparison &C,
 
 bool Sides::isMeasured(const ParameterComparison &C,
                        const Instruction &Predicate) {
-  return C.Compare &&
-         any_of(ByCompare.lookup(C.Compare),
+  if (!C.Compare)
+    return false;
+  const auto Others = ByCompare.lookup(C.Compare);
+  // A formula with other values is no threshold where the other side is one.
+  if (C.How.Variables && any_of(Others, [&](const ParameterComparison *Other) {
+        return Other->Operand != C.Operand && !Other->How.Variables;
+      }))
+    return true;
+  return any_of(Others,
                 [&](const ParameterComparison *Other) {
                   return Other->Operand != C.Operand &&
                          decides(*Other, Predicate);

@@ -15,10 +15,6 @@
 
 namespace tpc {
 
-/// True for the call that clang generates for `a * b + c`, which is no call in
-/// the source.
-bool isMultiplyAdd(const llvm::Instruction &I);
-
 class Wording {
 public:
   Wording(const LocationTypes &Types, PointsTo &Pointers,
@@ -28,9 +24,6 @@ public:
   /// inlined from a library function, that of the call. Null for library code.
   const llvm::DILocation *userPlace(const llvm::Instruction &I);
 
-  /// `above()`: without scopes and parameters.
-  static std::string function(const llvm::Function &F);
-  static std::string callee(const llvm::CallBase &Call);
   /// `Node::limit_`; empty if it has no name.
   std::string variable(const llvm::Value *Pointer) const;
   /// The same for a whole object.

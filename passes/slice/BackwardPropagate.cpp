@@ -35,6 +35,11 @@ SliceResult::lookup(const Instruction *Predicate) const {
   return It->second;
 }
 
+std::optional<SliceEntry> SliceResult::shown(const CmpInst *Compare) const {
+  auto It = Shown.find(Compare);
+  return It == Shown.end() ? std::nullopt : std::optional(It->second);
+}
+
 SmallVector<SliceStep, 16> SliceResult::pathOf(const SliceEntry &E) const {
   SmallVector<SliceStep, 16> Path{Steps[E.Step]};
   while (Path.back().Why != SliceStep::Exposes)
@@ -53,7 +58,8 @@ public:
         Ifs(AM.getResult<IfStatements>(M)), Thrown(AM.getResult<Throws>(M)),
         Exposing(AM.getResult<ExternCallFinder>(M)),
         Rules(AM.getResult<RuleAnalysis>(M)),
-        Sources(AM.getResult<OptionsAnalysis>(M)) {}
+        Sources(AM.getResult<OptionsAnalysis>(M)),
+        IsThesis(AM.getResult<OptionsAnalysis>(M).Profile == "thesis") {}
 
   SliceResult run();
 
@@ -96,6 +102,8 @@ private:
   void enterReachable(CallBase &Call);
 
   LocationSet SeenWritten, SeenLoaded;
+  /// The classes of which all copies have entered.
+  DenseSet<unsigned> CopiedClasses;
   const CallGraphResult &Calls;
   PointsTo &Pointers;
   AccessIndex &Accesses;
@@ -105,6 +113,7 @@ private:
   const ExternCallFinder::Result &Exposing;
   const RuleMatches &Rules;
   UserSources Sources;
+  const bool IsThesis; ///< only what a predicate decides counts
 
   SliceResult Result;
   DenseMap<const Instruction *, unsigned char> Seen;
@@ -129,7 +138,10 @@ void Slicer::enter(Instruction *I, unsigned char Reasons, Why Because) {
   if (!New)
     return;
   Have |= New;
-  Next.push_back({I, New, Current, addStep(I, Because)});
+  unsigned Step = addStep(I, Because);
+  Next.push_back({I, New, Current, Step});
+  if ((New & Gives) && isa<CmpInst>(I) && !IsThesis)
+    Result.Shown.try_emplace(I, SliceEntry{Round, Current, Step});
 }
 
 /// \p Predicate, or a call that may throw, controls the current item; the
@@ -208,7 +220,7 @@ void Slicer::enterMemory(const Value *Pointer, const Instruction &At) {
     if (Writes.isSharedBy(L, At, Pointer) && !SeenWritten.insert(L).second)
       continue;
     // The writes include what was copied there; that it was copied matters too.
-    for (Instruction *Copy : Accesses.copiesTo(L))
+    for (Instruction *Copy : Accesses.copiesTo(L, CopiedClasses))
       enter(Copy, Runs, Why::Writes);
     for (Instruction *Write : Writes.writesOf(L, At, Pointer))
       enter(Write, Gives, Why::Writes);
@@ -292,7 +304,7 @@ void Slicer::enterDerived(const Value *Pointer) {
     return;
   for (const Use &U : Pointer->uses()) {
     auto *I = dyn_cast<Instruction>(U.getUser());
-    if (!I || Accesses.isPutIn(U))
+    if (!I || Accesses.isUnchanged(U))
       continue;
     // A store into a local object is found by its place.
     const auto *Store = dyn_cast<StoreInst>(I);
@@ -380,7 +392,7 @@ void Slicer::enterOperands(Instruction &I) {
       return enterPointer(Load->getPointerOperand());
     // The definitions include what is copied; that it is copied matters too.
     for (const Location &L : Pointers.touched(*Load))
-      for (Instruction *Copy : Accesses.copiesTo(L))
+      for (Instruction *Copy : Accesses.copiesTo(L, CopiedClasses))
         enter(Copy, Runs, Why::Writes);
     for (Instruction *Write : Writes.definitionsOf(*Load)) {
       // A constant that library code stores is stored in its constructors.

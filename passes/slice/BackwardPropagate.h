@@ -24,7 +24,7 @@
 #define TPC_BACKWARDPROPAGATE_H
 
 #include "llvm/ADT/DenseMap.h"
-#include "llvm/IR/Instruction.h"
+#include "llvm/IR/InstrTypes.h"
 #include "llvm/IR/PassManager.h"
 
 #include <optional>
@@ -62,6 +62,9 @@ class SliceResult {
 public:
   /// None if no exposing statement depends on \p Predicate.
   std::optional<SliceEntry> lookup(const llvm::Instruction *Predicate) const;
+  /// How the outcome of \p Compare entered the slice as a value, such as that
+  /// of a message that is published; none if it did not.
+  std::optional<SliceEntry> shown(const llvm::CmpInst *Compare) const;
   unsigned numPredicates() const { return Predicates.size(); }
   /// The path from a predicate to its nearest exposing statement: the one that
   /// determined its distance.
@@ -69,7 +72,7 @@ public:
 
 private:
   friend class Slicer;
-  llvm::DenseMap<const llvm::Instruction *, SliceEntry> Predicates;
+  llvm::DenseMap<const llvm::Instruction *, SliceEntry> Predicates, Shown;
   std::vector<SliceStep> Steps;
 };
 

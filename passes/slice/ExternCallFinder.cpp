@@ -5,6 +5,7 @@
 #include "params/Texts.h"
 #include "support/Print.h"
 
+#include "llvm/IR/DebugInfoMetadata.h"
 #include "llvm/IR/Module.h"
 
 using namespace llvm;
@@ -74,6 +75,11 @@ ExternCallFinder::Result ExternCallFinder::run(Module &M,
   SmallVector<NamedObject, 0> Named = namedObjects(M, Rules, Pointers, Known);
   Result R;
   forEachCall(M, Rules, Rule::Exposing, [&](CallBase &Call, const Rule &Row) {
+    const DILocation *Loc = Call.getDebugLoc();
+    if (const DISubprogram *In =
+            Loc ? Loc->getScope()->getSubprogram() : nullptr;
+        In && Rules.isSilent(*In))
+      return;
     std::string Topic = Row.Name
                             ? Known.nameOf(Call, Row)
                             : topicOf(objectOf(Call, Row), Named, Pointers);

@@ -5,6 +5,7 @@
 #include "llvm/Demangle/Demangle.h"
 #include "llvm/IR/DebugInfoMetadata.h"
 #include "llvm/IR/InstrTypes.h"
+#include "llvm/Support/SHA1.h"
 
 #include <cstdlib>
 
@@ -51,12 +52,35 @@ std::string qualifiedName(StringRef Mangled) {
   return withoutTemplateArguments(Scope.empty() ? Base : Scope + "::" + Base);
 }
 
-std::string functionName(const Function &F) {
-  // The debug information keeps the name of the function that was cloned.
+/// The mangled name of \p F in the source. The debug information keeps that of
+/// a function that was cloned.
+static StringRef linkageName(const Function &F) {
   const DISubprogram *SP = F.getSubprogram();
   StringRef Linkage = SP ? SP->getLinkageName() : "";
-  return demangle(Linkage.empty() ? F.getName() : Linkage);
+  return Linkage.empty() ? F.getName() : Linkage;
 }
+
+StringRef unscoped(StringRef Name) {
+  size_t Scope = Name.rfind("::");
+  return Scope == StringRef::npos ? Name : Name.drop_front(Scope + 2);
+}
+
+std::string shortName(const Function &F) {
+  return unscoped(qualifiedName(linkageName(F))).str() + "()";
+}
+
+std::string calleeName(const CallBase &Call) {
+  const Function *F = Call.getCalledFunction();
+  if (!F)
+    return "a function that is not known";
+  StringRef Name = F->getName();
+  if (!Name.consume_front("llvm."))
+    return shortName(*F);
+  // The source calls `llvm.fabs.f64` fabs().
+  return Name.split('.').first.str() + "()";
+}
+
+std::string functionName(const Function &F) { return demangle(linkageName(F)); }
 
 std::string functionNameFor(const DILocation &Loc) {
   const DISubprogram *SP = Loc.getScope()->getSubprogram();
@@ -145,6 +169,49 @@ std::string resultType(const Function &F) {
   return Text;
 }
 
+/// True for a type that is one argument: one that is not a class.
+static bool isOneArgument(StringRef Type) {
+  static constexpr StringRef Scalars[] = {"bool",
+                                          "char",
+                                          "signed char",
+                                          "unsigned char",
+                                          "short",
+                                          "int",
+                                          "unsigned short",
+                                          "unsigned int",
+                                          "long",
+                                          "float",
+                                          "unsigned long",
+                                          "long long",
+                                          "unsigned long long",
+                                          "double"};
+  return Type.ends_with("&") || Type.ends_with("*") ||
+         is_contained(Scalars, Type);
+}
+
+static bool isConstTarget(StringRef Type) {
+  if (!Type.consume_back(" const&") && !Type.consume_back(" const*"))
+    return false;
+  bool LeadsElsewhere = Type.contains('*') || Type.contains("_ptr<") ||
+                        Type.contains("function<");
+  return !LeadsElsewhere;
+}
+
+SmallBitVector constArguments(const Function &F) {
+  SmallBitVector Const(F.arg_size());
+  unsigned First = F.hasStructRetAttr() ? 1 : 0;
+  SmallVector<std::string, 4> Types = parameterTypes(F);
+  // A method has its object before the others.
+  if (First + Types.size() < F.arg_size())
+    ++First;
+  // An argument that is a class may be none, one or two in the code.
+  if (First + Types.size() == F.arg_size() && all_of(Types, isOneArgument))
+    for (const auto &[N, Type] : enumerate(Types))
+      if (isConstTarget(Type))
+        Const.set(First + N);
+  return Const;
+}
+
 static bool isDestructor(StringRef Mangled) {
   ItaniumPartialDemangler Demangler;
   return (Mangled.ends_with("D0Ev") || Mangled.ends_with("D1Ev") ||
@@ -173,6 +240,21 @@ StringRef plainClassName(const StructType &T) {
     Name = Head;
   Name.consume_back(".base");
   return Name;
+}
+
+std::string uuidOf(StringRef Name) {
+  static constexpr uint8_t Namespace[16] = {0x6b, 0x0f, 0x7a, 0x52, 0x2c, 0x9e,
+                                            0x4d, 0x61, 0x9a, 0x37, 0x8f, 0x15,
+                                            0xc3, 0x40, 0x5e, 0xd8};
+  SHA1 Hash;
+  Hash.update(ArrayRef(Namespace));
+  Hash.update(Name);
+  std::array<uint8_t, 20> Digest = Hash.final();
+  Digest[6] = (Digest[6] & 0x0f) | 0x50;
+  Digest[8] = (Digest[8] & 0x3f) | 0x80;
+  std::string Hex = toHex(ArrayRef(Digest).take_front(16), /*LowerCase=*/true);
+  return Hex.substr(0, 8) + "-" + Hex.substr(8, 4) + "-" + Hex.substr(12, 4) +
+         "-" + Hex.substr(16, 4) + "-" + Hex.substr(20);
 }
 
 } // namespace tpc

@@ -2,6 +2,7 @@
 #ifndef TPC_NAMES_H
 #define TPC_NAMES_H
 
+#include "llvm/ADT/SmallBitVector.h"
 #include "llvm/ADT/StringRef.h"
 #include "llvm/IR/DebugInfoMetadata.h"
 #include "llvm/IR/DerivedTypes.h"
@@ -15,6 +16,15 @@ namespace tpc {
 /// template arguments: `ros::NodeHandle::param`. Returns a name that is not
 /// mangled unchanged.
 std::string qualifiedName(llvm::StringRef Mangled);
+
+/// \p Name without scopes.
+llvm::StringRef unscoped(llvm::StringRef Name);
+
+/// `above()`: without scopes and parameters, for people.
+std::string shortName(const llvm::Function &F);
+
+/// The same for the function that \p Call calls.
+std::string calleeName(const llvm::CallBase &Call);
 
 /// `void f(int)` for \p F, for people and for keys.
 std::string functionName(const llvm::Function &F);
@@ -38,12 +48,27 @@ std::string classArgument(const llvm::Function &F);
 /// there), otherwise from the code; empty for an object.
 std::string resultType(const llvm::Function &F);
 
+/// The arguments that \p F, by the types in its mangled name, leaves unchanged:
+/// those that it takes as `T const &` or `T const *`. What pointers inside of
+/// them lead to may change, so that classes of pointers are left out, and all
+/// where the name does not tell which argument is which.
+llvm::SmallBitVector constArguments(const llvm::Function &F);
+
+/// The functions of the analysed copy that take the number out of an object and
+/// put it into one (see HeldNumbers.h): `double tpc::Held::take() const` and
+/// `void tpc::Held::put(double)`.
+inline constexpr llvm::StringLiteral TakeName = "_ZNK3tpc4Held4takeEv";
+inline constexpr llvm::StringLiteral PutName = "_ZN3tpc4Held3putEd";
+
 /// True for the mangled names of the functions that free memory.
 bool givesMemoryBack(llvm::StringRef Mangled);
 
 /// True if \p Call calls a function without a body that ends the life of its
 /// argument: nobody reads what it writes there.
 bool endsLife(const llvm::CallBase &Call);
+
+/// The UUID of version 5 (RFC 4122) for \p Name, in TPC's own namespace.
+std::string uuidOf(llvm::StringRef Name);
 
 /// `ns::Node` for the type `class.ns::Node.7`: without the kind, and without
 /// the suffix that distinguishes copies of one class.

@@ -14,6 +14,7 @@ from pytpc.api.missions import (
     question_of,
     read,
     read_marked,
+    with_names_of,
 )
 from pytpc.base.errors import InputError
 from pytpc.base.wording import plain
@@ -66,9 +67,10 @@ def diagnose(
         TypeError: both ``question`` and other settings are given, or there is no such setting.
     """
     asked = question_of(question, settings, DiagnoseSettings.__annotations__)
-    recording, static = read_marked(mission), load_static(static_info)
+    recording = read_marked(mission)
+    source = None if isinstance(mission, Recording) else Path(mission)
+    static = with_names_of(recording, load_static(static_info), source)
     if question is None:
-        source = None if isinstance(mission, Recording) else Path(mission)
         good = None if asked.reference is None else read(asked.reference)
         asked = replace(asked, reference=good, declared=find_declared(static, source))
     found = blame(recording, static, asked)
@@ -125,15 +127,15 @@ class Rankings(TableSequence[MarkRanking]):
         source: Path | None = None,
     ) -> Rankings:
         """Rank the parameters at each mark of a recording that was read before."""
-        found = rank_marks(recording, static_info, question)
-        return cls(tuple(found), recording, static_info, source, question)
+        named = with_names_of(recording, static_info, source)
+        found = rank_marks(recording, named, question)
+        return cls(tuple(found), recording, named, source, question)
 
     @property
     def declared(self) -> Sequence[Declared]:
         """The declared ranges: those of the question, or else those in the sources."""
         given = self.question.declared
-        # Whoever looked and found none has put an own list there.
-        return find_declared(self.static_info, self.source) if given is PLAIN.declared else given
+        return find_declared(self.static_info, self.source) if given is None else given
 
     def only(self, parameter: str) -> Rankings:
         """The rankings of one parameter, at its positions.
@@ -240,4 +242,7 @@ def curves(
         TypeError: both ``question`` and other settings are given, or there is no such setting.
     """
     asked = question_of(question, settings, RankSettings.__annotations__)
-    return rank_curves(read(mission), load_static(static_info), asked, step_s=step_s)
+    recording = read(mission)
+    source = None if isinstance(mission, Recording) else Path(mission)
+    named = with_names_of(recording, load_static(static_info), source)
+    return rank_curves(recording, named, asked, step_s=step_s)

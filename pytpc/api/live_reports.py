@@ -13,13 +13,22 @@ from pytpc.diagnosis.results.live import Seen
 from pytpc.ingest.losses import LossCounter
 from pytpc.ingest.ros1 import decode_log, decode_string
 from pytpc.ingest.rosout_line import (
+    BATCH_PREFIX,
     Malformed,
     parse_other,
     parse_report,
     parse_stamped,
 )
+from pytpc.ingest.short_summary import (
+    SPAN,
+    ShortSummary,
+    Span,
+    is_short,
+    parse_short,
+    parse_span,
+)
 from pytpc.recording.summaries import Summary
-from pytpc.ros.ros1.relay import ROSOUT, line_of
+from pytpc.ros.ros1.relay import ROSOUT, lines_of
 from pytpc.ros.ros1.subscriber import Source
 
 Item = Seen | Summary
@@ -89,10 +98,13 @@ class Reports:
         if not log.msg.startswith(_BEGIN):
             return []
         text = log.msg.decode("utf-8", "replace")
-        line = line_of(text, log.stamp_ns)
-        if line is not None:
+        for line in lines_of(text, log.stamp_ns):
             self._logged[line] += 1
             self._order.append((steady_s + _FORGET_S, line))
+        if text.startswith(BATCH_PREFIX):
+            # Of another numbering than the topic's batches.
+            self._counter.see_text(f"{node}{ROSOUT}", log.msg[len(BATCH_PREFIX) :])
+            return self._batch(text, node)
         report = parse_report(text)
         if isinstance(report, Malformed):
             self.malformed += 1
@@ -108,13 +120,28 @@ class Reports:
         self._counter.see_text(source.node, raw)
         text = raw.decode("utf-8", "replace")
         if text.startswith("#"):
-            lines = text.split("\n")[1:]
-            found = [self._line(line, source.node) for line in lines if line]
-            return [item for item in found if item is not None]
+            return self._batch(text, source.node)
         item = self._line(text, source.node)
         if item is not None:
             self._held.append(_Held(steady_s + _HOLD_S, text.rstrip(), item))
         return []
+
+    def _batch(self, text: str, node: str) -> list[Item]:
+        found: list[Item] = []
+        span: Span | None = None
+        for line in text.split("\n")[1:]:
+            item: object = None
+            if is_short(line):
+                item = parse_span(line) if line[0] == SPAN else parse_short(line, span, node)
+                self.malformed += isinstance(item, Malformed)
+                span = item if isinstance(item, Span) else span
+            elif line:
+                item = self._line(line, node)
+            if isinstance(item, ShortSummary):
+                found.append(item.summary)
+            elif isinstance(item, Seen | Summary):
+                found.append(item)
+        return found
 
     def _line(self, line: str, node: str) -> Item | None:
         other = parse_other(line, node, stamped=True)

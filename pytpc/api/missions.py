@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from pytpc.base.errors import InputError
+from pytpc.diagnosis.full_names import with_full_names
 from pytpc.diagnosis.question import Question
 from pytpc.ingest.duplicates import TOLERANCE_NS
 from pytpc.ingest.reading import opened
@@ -17,6 +18,7 @@ from pytpc.recording.declaration import Declared
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo, read_static
 from pytpc.values.declared import declared_in
+from pytpc.values.origins import read_origins
 
 Source = str | os.PathLike[str]
 Progress = Callable[[int, int], None]
@@ -48,8 +50,7 @@ def read(source: Recording | Source) -> Recording:
 
 
 def read_named(source: Path, on_progress: Progress | None = None) -> Recording:
-    """A recorded mission; a folder gives it its name, as the bags of all missions have the same
-    name.
+    """A recorded mission, named after its folder, because the bags of all missions are named alike.
 
     Raises:
         InputError: it cannot be read.
@@ -68,6 +69,23 @@ def read_marked(mission: Recording | Source) -> Recording:
     if not recording.marks:
         raise InputError("has no marks; add some with `pytpc mark`", recording.name)
     return recording
+
+
+def with_names_of(recording: Recording, static_info: StaticInfo, source: Path | None) -> StaticInfo:
+    """The static information with the full names of parameters that a mission tells.
+
+    Args:
+        recording: the mission.
+        static_info: of its build.
+        source: its path, beside which the values of its parameters are; None: not known.
+
+    Raises:
+        InputError: origins.json is there and cannot be read.
+    """
+    origins = {} if source is None else read_origins(source)
+    return with_full_names(
+        static_info, recording, {name: origin.value for name, origin in origins.items()}
+    )
 
 
 def check_reports(recording: Recording, static_info: StaticInfo, source: Path) -> None:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TypedDict, Unpack
 
 from pytpc.api.diagnosing import Rankings
-from pytpc.api.missions import Source, load_static, read
+from pytpc.api.missions import Source, load_static, read, with_names_of
 from pytpc.base.wording import Number
 from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.ranking.blame import blame
@@ -137,7 +138,10 @@ def what_if(
         InputError: no comparison is with that parameter, or something cannot be read.
     """
     question = Question(**settings)
-    return replay(read(mission), load_static(static_info), parameter, value, question)
+    recording = read(mission)
+    source = None if isinstance(mission, Recording) else Path(mission)
+    named = with_names_of(recording, load_static(static_info), source)
+    return replay(recording, named, parameter, value, question)
 
 
 def what_if_by_type(

@@ -28,12 +28,8 @@ def stage_beside(target: Path, data: bytes, mode: int = 0o644) -> Path:
         OSError: the folder cannot be written or the disk is full; then nothing is left behind.
     """
     staged = _beside(target)
-    descriptor = os.open(staged, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, mode)
     try:
-        with os.fdopen(descriptor, "wb") as stream:
-            stream.write(data)
-            stream.flush()
-            os.fsync(stream.fileno())
+        _write_new(staged, data, mode)
     except BaseException:
         with contextlib.suppress(OSError):
             staged.unlink()
@@ -47,15 +43,12 @@ def stage_like(target: Path, data: bytes) -> Path:
     Raises:
         OSError: as ``stage_beside``, or ``target`` does not exist.
     """
-    status = target.stat()
-    staged = stage_beside(target, data)
+    staged = _beside(target)
     try:
-        if (status.st_uid, status.st_gid) != (os.geteuid(), os.getegid()):
-            with contextlib.suppress(PermissionError):
-                os.chown(staged, status.st_uid, status.st_gid)
-        staged.chmod(stat.S_IMODE(status.st_mode))
+        _write_like(staged, target.stat(), data)
     except BaseException:
-        staged.unlink()
+        with contextlib.suppress(OSError):
+            staged.unlink()
         raise
     return staged
 
@@ -78,8 +71,7 @@ def write_atomic(target: Path, data: bytes) -> None:
         TpcError: the file cannot be written; what stood there before is untouched.
     """
     with replacing(target) as staged:
-        staged.touch(0o644, exist_ok=False)
-        staged.write_bytes(data)
+        _write_new(staged, data)
 
 
 def replace_file(target: Path, data: bytes) -> None:
@@ -89,17 +81,13 @@ def replace_file(target: Path, data: bytes) -> None:
         TpcError: the file cannot be written; what stood there before is untouched.
     """
     try:
-        if target.exists() and not os.access(target, os.W_OK):
-            raise PermissionError(13, "it is read-only")
-        staged = stage_like(target, data)
-        try:
-            staged.replace(target)
-        except BaseException:
-            with contextlib.suppress(OSError):
-                staged.unlink()
-            raise
+        status = target.stat()
     except OSError as error:
-        raise TpcError(f"cannot be written: {error.strerror or error}", target) from error
+        raise _unwritten(target, error) from error
+    with replacing(target) as staged:
+        if not os.access(target, os.W_OK):
+            raise PermissionError(13, "it is read-only")
+        _write_like(staged, status, data)
 
 
 @contextlib.contextmanager
@@ -117,10 +105,30 @@ def replacing(path: Path) -> Iterator[Path]:
             os.fsync(stream.fileno())
         staged.replace(path)
     except OSError as error:
-        raise TpcError(f"cannot be written: {error.strerror or error}", path) from error
+        raise _unwritten(path, error) from error
     finally:
         with contextlib.suppress(OSError):
             staged.unlink(missing_ok=True)
+
+
+def _write_new(path: Path, data: bytes, mode: int = 0o644) -> None:
+    descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, mode)
+    with os.fdopen(descriptor, "wb") as stream:
+        stream.write(data)
+        stream.flush()
+        os.fsync(stream.fileno())
+
+
+def _write_like(path: Path, status: os.stat_result, data: bytes) -> None:
+    _write_new(path, data)
+    if (status.st_uid, status.st_gid) != (os.geteuid(), os.getegid()):
+        with contextlib.suppress(PermissionError):
+            os.chown(path, status.st_uid, status.st_gid)
+    path.chmod(stat.S_IMODE(status.st_mode))
+
+
+def _unwritten(path: Path, error: OSError) -> TpcError:
+    return TpcError(f"cannot be written: {error.strerror or error}", path)
 
 
 def _beside(target: Path) -> Path:

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any, ClassVar, Self, TypeVar
 
@@ -56,6 +58,29 @@ def recode(codes: Int32s, words: Sequence[str], among: Sequence[str]) -> Int32s:
     places = {word: place for place, word in enumerate(among)}
     table = np.array([places.get(word, -1) for word in words] or [-1], dtype=np.int32)
     return table[codes]
+
+
+@dataclass(frozen=True)
+class KeyIndex:
+    """The rows of every key together.
+
+    ``order`` int64[n] lists rows by key, then by place in the table; the rows of key code ``k``
+    are ``order[offsets[k]:offsets[k + 1]]``.
+    """
+
+    order: Int64s
+    offsets: Int64s
+
+    def rows(self, code: int) -> Int64s:
+        """The rows of one key, in the order of the table."""
+        return self.order[self.offsets[code] : self.offsets[code + 1]]
+
+
+def order_of(codes: Int32s | Int64s) -> Int64s:
+    """int64[n]: the places of ``codes``, which are not negative, in ascending order; stable."""
+    # For 16 bits numpy counts instead of comparing (radix sort).
+    short = int(codes.max(initial=0)) < 1 << 16
+    return np.argsort(codes.astype(np.uint16) if short else codes, kind="stable")
 
 
 class WordTable:
@@ -127,6 +152,23 @@ class WordTable:
 
     def __len__(self) -> int:
         return int(getattr(self, self.order).size)
+
+    @cached_property
+    def by_key(self) -> KeyIndex:
+        """The rows of every key; worked out once."""
+        codes: Int32s = getattr(self, "key")  # noqa: B009 - a field of the subclasses
+        counts = np.bincount(codes, minlength=len(self.keys))
+        offsets = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+        return KeyIndex(frozen(order_of(codes)), frozen(offsets))
+
+    @cached_property
+    def _codes(self) -> dict[str, int]:
+        return {key: code for code, key in enumerate(self.keys)}
+
+    def rows_of(self, key: str) -> Int64s:
+        """The rows of a key, in the order of the table; none where the table does not know it."""
+        code = self._codes.get(key)
+        return np.empty(0, dtype=np.int64) if code is None else self.by_key.rows(code)
 
     def columns(self) -> Columns:
         """The columns by name, in the order of ``schema``."""

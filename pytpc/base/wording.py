@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 Number = float | int | bool
 _LONG = 10**15
 
@@ -13,7 +15,19 @@ def many(count: int, noun: str) -> str:
 
 def plain(text: str) -> str:
     """``text`` without control characters: a log must not steer the terminal."""
+    if text.isprintable():
+        return text
     return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
+
+
+def listed(texts: Sequence[str], most: int) -> str:
+    """The texts with commas between them; behind the first ``most`` only how many there are more.
+
+    >>> listed(["a", "b", "c"], 3), listed(["a", "b", "c"], 2)
+    ('a, b, c', 'a, b and 1 more')
+    """
+    shown = ", ".join(texts[:most])
+    return shown if len(texts) <= most else f"{shown} and {len(texts) - most} more"
 
 
 def show(value: Number | None) -> str:

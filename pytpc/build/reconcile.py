@@ -156,7 +156,7 @@ def _why(unit: Recorded, target: LinkTarget) -> str:
     beginnings = [_beginning(path) for path in objects]
     if objects and not any(data.startswith(_BITCODE) for data in beginnings):
         return "its objects are native code, not compiled with -flto"
-    # clang marks bitcode for ThinLTO.
+    # clang writes this word into bitcode that is not for ThinLTO.
     if any(
         data.startswith(_BITCODE) and b"ThinLTO" not in path.read_bytes()
         for path, data in zip(objects, beginnings, strict=True)

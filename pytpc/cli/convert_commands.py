@@ -1,4 +1,4 @@
-"""The command ``convert``, which every kind of recording goes through."""
+"""The command ``convert``: recordings of any format to Parquet or CSV."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Commands that say why: ``explain`` and ``blind-spots``."""
+"""Commands that say why: ``explain``, ``coverage`` and ``blind-spots``."""
 
 from __future__ import annotations
 
@@ -14,8 +14,10 @@ from rich.text import Text
 
 from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import JSON
-from pytpc.cli.console import console, print_json
+from pytpc.cli.console import console, print_json, warn_of_failed
+from pytpc.cli.long_table import print_table
 from pytpc.cli.sources import SOURCES, SOURCES_AND_QUESTION, static_of
+from pytpc.static.coverage import STATES, Covered, State, coverage, totals
 from pytpc.static.explanations import (
     Explanation,
     FoundComparison,
@@ -92,7 +94,66 @@ def blind_spots_command(sources: tuple[Path, ...], as_json: bool) -> None:
     click.echo(_spots_summary(static))
 
 
-COMMANDS: list[click.Command] = [explain_command, blind_spots_command]
+@click.command("coverage")
+@SOURCES
+@click.option(
+    "--state", "states", multiple=True, type=click.Choice(list(STATES)), help="Show only these."
+)
+@JSON
+def coverage_command(sources: tuple[Path, ...], states: tuple[State, ...], as_json: bool) -> None:
+    """Show what became of each parameter that is read in SOURCE.
+
+    \b
+    compared  a comparison reports it
+    hidden    it is compared, but nothing exposed depends on that
+    lost      the analysis cannot follow its value; the table says where, and why
+    unread    it is stored or passed on, and its link unit does not read it there
+    used      it is used, and never compared: a gain, a name, a rate
+
+    Of several states, a parameter has the first. SOURCE is a static.json, a build base or a
+    workspace; without it, this folder is used.
+    """
+    static = static_of(sources)
+    covered = coverage(static)
+    counted = totals(covered)
+    shown = [found for found in covered if not states or found.state in states]
+    if as_json:
+        print_json({"totals": counted, "parameters": [asdict(found) for found in shown]})
+        return
+    rows = [_covered_row(found) for found in shown]
+    print_table(
+        console(), ("Parameter", "Link unit", "State", "Read at", "What became of it"), rows
+    )
+    click.echo(
+        f"{many(len(covered), 'parameter')} in {many(len(static.units), 'link unit')}: "
+        + ", ".join(f"{count:,} {state}" for state, count in counted.items() if count)
+    )
+    warn_of_failed(static)
+
+
+COMMANDS: list[click.Command] = [explain_command, coverage_command, blind_spots_command]
+
+
+def _covered_row(found: Covered) -> list[str]:
+    read_at = found.reads[0] if found.reads else ""
+    cells = [found.parameter, f"{found.package}/{found.link_unit}", found.state, read_at]
+    match found.state:
+        case "compared":
+            became = _places(found.comparisons)
+        case "hidden":
+            became = _places(found.hidden)
+        case "lost" | "unread":
+            places = found.lost or found.unread
+            others = f"; and {len(places) - 1} more" if len(places) > 1 else ""
+            became = f"{places[0].place}: {places[0].why}{others}"
+        case _:
+            became = STATES[found.state]
+    return [*cells, became]
+
+
+def _places(places: tuple[str, ...]) -> str:
+    others = f" and {len(places) - 1} more" if len(places) > 1 else ""
+    return f"compared at {places[0]}{others}"
 
 
 def _heading(found: FoundComparison) -> Text:

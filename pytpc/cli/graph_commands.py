@@ -5,14 +5,13 @@ from __future__ import annotations
 import json
 import os
 from dataclasses import asdict
-from pathlib import Path
 
 import click
 from rich.table import Table
 
 from pytpc.base.errors import RunError
 from pytpc.base.wording import many, plain
-from pytpc.cli.arguments import JSON, PATH
+from pytpc.cli.arguments import JSON
 from pytpc.cli.console import console, progress, table_of, warn
 from pytpc.python_runtime.config import POLICIES, SINKS
 from pytpc.ros.ros1 import relay
@@ -41,27 +40,17 @@ _COUNT = click.IntRange(min=0, max=(1 << 31) - 1)
 @click.option(
     "--process-cap", type=_COUNT, help="Most reports per second of one process; 0: no limit."
 )
-@click.option(
-    "--folder",
-    type=PATH,
-    help="Folder for the files of --sink file, on the node's machine.",
-)
-@click.option("--file-limit", type=_COUNT, help="Largest size of a file in MiB; 0: no limit.")
-@click.option("--file-reserve", type=_COUNT, help="MiB to leave free on the disk.")
 @click.option("--clear", is_flag=True, help="Forget earlier settings first.")
 @JSON
-def sink_command(
-    *, nodes: tuple[str, ...], folder: Path | None, clear: bool, as_json: bool, **options: Value
-) -> None:
+def sink_command(*, nodes: tuple[str, ...], clear: bool, as_json: bool, **options: Value) -> None:
     """Show or change what instrumented NODEs report, and where to, while they run.
 
     Without a NODE, it applies to all running nodes and to those started later. Settings are stored
     as ROS parameters (NODE/tpc/sink, or /tpc/sink for all), so they last until the master ends. The
-    setting of a node overrides the one for all.
+    setting of a node overrides the one for all. Where files go and how large they grow is decided
+    by the environment of the node alone (TPC_FOLDER, TPC_FILE_LIMIT, TPC_FILE_RESERVE).
     """
     settings = {name: value for name, value in options.items() if value is not None}
-    if folder is not None:
-        settings["folder"] = str(folder)
     graph = InstrumentedNodes(uri_of(os.environ))
     named = chosen(graph.names(), nodes)
     for node in named if nodes else [None]:

@@ -1,4 +1,4 @@
-"""Commands about missions: ``record`` and ``convert``."""
+"""The command ``record``."""
 
 from __future__ import annotations
 

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from pytpc.base.paths import MERGED_FILE, OWN_FOLDER
 from pytpc.base.wording import many
-from pytpc.build.collect import collect_sources
-from pytpc.build.stale import Stale
 from pytpc.cli.arguments import PATH, Command
 from pytpc.cli.completion_commands import offer_parameters
 from pytpc.cli.console import progress, warn
 from pytpc.static.static_info import StaticInfo, read_static
+
+if TYPE_CHECKING:
+    from pytpc.build.stale import Stale
 
 SOURCES = click.argument("sources", type=PATH, nargs=-1, metavar="[SOURCE]...")
 
@@ -40,6 +42,9 @@ def static_of(sources: Sequence[Path]) -> StaticInfo:
     with progress("reading static information") as advance:
         if len(chosen) == 1 and _is_merged(chosen[0]):
             return read_static(chosen[0], advance)
+        # Its import takes longer than to read a file, and needs the analysis of Python.
+        from pytpc.build.collect import collect_sources  # noqa: PLC0415
+
         collected = collect_sources(chosen, advance)
     tell_dropped(collected.dropped)
     return collected.static

@@ -1,10 +1,9 @@
-"""Commands about static information: ``collect``, ``list``, ``show`` and ``export``."""
+"""Commands about static information: ``collect``, ``show`` and ``export``."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import wraps
 from pathlib import Path
 
 import click
@@ -25,17 +24,16 @@ from pytpc.cli.arguments import (
     STATIC_OUTPUT,
     as_object,
 )
-from pytpc.cli.completion_commands import offer_parameters
 from pytpc.cli.console import (
     console,
     found_text,
     print_json,
     progress,
     show_units,
-    table_of,
     warn_of_failed,
 )
 from pytpc.cli.explain_commands import print_why_not
+from pytpc.cli.selecting import SELECTING, place_of
 from pytpc.cli.sources import SOURCES, SOURCES_AND_QUESTION, static_of, tell_dropped
 from pytpc.conditions.cpp_conditions import lines_of
 from pytpc.conditions.lookup import look_up_conditions
@@ -47,56 +45,6 @@ from pytpc.static.explanations import Explanation, look_up, why_no_comparison
 from pytpc.static.places import Tpc
 from pytpc.static.selection import ORDERS, Selection, select
 from pytpc.static.static_info import StaticInfo
-
-_TYPES = ("parameter", "flag", "derived", "constant")
-
-
-def _selecting(command: Callable[..., None]) -> Callable[..., None]:
-    """Add the options that say which comparisons are meant; the command gets a ``Selection``."""
-
-    names = ("packages", "parameters", "types", "files", "constants")
-
-    @wraps(command)
-    def with_selection(**given: object) -> None:
-        made: Callable[..., Selection] = Selection
-        wanted = made(**{name: given.pop(name) for name in names})
-        command(wanted=wanted, **given)
-
-    options = (
-        click.option(
-            "--package",
-            "packages",
-            multiple=True,
-            metavar="NAME",
-            help="Show only this package; may be repeated.",
-        ),
-        click.option(
-            "--parameter",
-            "parameters",
-            multiple=True,
-            metavar="GLOB",
-            shell_complete=offer_parameters,
-            help="Show only parameters like this, as in 'max_*'; the namespace may be left out.",
-        ),
-        click.option(
-            "--type",
-            "types",
-            multiple=True,
-            type=click.Choice(_TYPES),
-            help="Show only comparisons of this type; may be repeated.",
-        ),
-        click.option(
-            "--file",
-            "files",
-            multiple=True,
-            metavar="FILE",
-            help="Show only this source file, or files like this pattern.",
-        ),
-        click.option("--constants", is_flag=True, help="Show comparisons with constants, too."),
-    )
-    for option in reversed(options):
-        with_selection = option(with_selection)
-    return with_selection
 
 
 @click.command("collect")
@@ -132,41 +80,6 @@ def collect_command(
     show_units(collected.static)
     tell_dropped(collected.dropped)
     click.echo(f"{found_text(collected.static)}: {output}")
-
-
-@click.command("list")
-@SOURCES
-@JSON
-@_selecting
-@click.option(
-    "--sort",
-    "order",
-    type=click.Choice(list(ORDERS)),
-    default="place",
-    show_default=True,
-    help="Sort the rows by this.",
-)
-def list_command(
-    sources: tuple[Path, ...], *, as_json: bool, order: str, wanted: Selection
-) -> None:
-    """List the comparisons in SOURCE: a static.json, a build base or a workspace.
-
-    Each place in the source is one row, however many link units contain it. Without SOURCE,
-    static.json in this folder is read, or else what `pytpc build` left below it.
-    """
-    static = static_of(sources)
-    found = select(static, replace(wanted, order=order))
-    if as_json:
-        listed = [_listed(static, tpc) for tpc in found]
-        print_json(listed)
-        return
-    console().print(_table(static, found), highlight=False)
-    warn_of_failed(static)
-    constants = sum(1 for tpc in found if tpc.type == "constant")
-    shown, there = len(found) - constants, len(select(static, Selection()))
-    some = f"{shown:,} shown of " if shown != there else ""
-    more = f"; and {constants:,} with constants" if constants else ""
-    click.echo(some + found_text(static) + more)
 
 
 @click.command("show")
@@ -218,7 +131,7 @@ class _ExportArguments:
     type=click.Path(path_type=Path, exists=True, file_okay=False),
     help="Folder that SARIF's paths are relative to. [default: what all packages share]",
 )
-@_selecting
+@SELECTING
 @as_object(_ExportArguments)
 def export_command(
     given: _ExportArguments,
@@ -237,44 +150,13 @@ def export_command(
     warn_of_failed(static)
 
 
-COMMANDS: list[click.Command] = [collect_command, list_command, show_command, export_command]
+COMMANDS: list[click.Command] = [collect_command, show_command, export_command]
 
 
 def _details(static: StaticInfo, tpcs: Sequence[Tpc]) -> list[Details]:
     with progress("parsing sources") as advance:
         answers = look_up_conditions(static, tpcs, advance)
     return [details(static, tpc, answers[tpc.key]) for tpc in tpcs]
-
-
-def _listed(static: StaticInfo, tpc: Tpc) -> dict[str, object]:
-    """A place in the source: its comparison nearest to an exposing statement, and all its keys."""
-    unit = static.unit_of(tpc.key)
-    return {
-        "package": unit.package,
-        "link_unit": unit.link_unit,
-        **static.comparisons[tpc.key].to_json(),
-        "absolute_file": tpc.file,
-        "keys": tpc.to_json()["keys"],
-    }
-
-
-def _table(static: StaticInfo, tpcs: Sequence[Tpc]) -> Table:
-    several = any(len(tpc.keys) > 1 for tpc in tpcs)
-    units = ("Units",) if several else ()
-    rows = []
-    for tpc in tpcs:
-        found = static.comparisons[tpc.key]
-        line = found.source_code or f"{found.relation} {found.name or found.source}"
-        cells = [tpc.parameter or "", tpc.type, _place(tpc), str(tpc.distance)]
-        if several:
-            cells.append(str(len(tpc.link_units)) if len(tpc.keys) > 1 else "")
-        rows.append([*cells, found.topic or "?", line])
-    headings = ("Parameter", "Type", "Place", "Distance", *units, "Exposed as", "Source line")
-    return table_of(headings, rows, right=("Distance", "Units"))
-
-
-def _place(tpc: Tpc) -> str:
-    return f"{tpc.file if tpc.place == tpc.file else f'{tpc.package}/{tpc.place}'}:{tpc.lineno}"
 
 
 def _print_all(out: Console, found: Sequence[Details], explanation: Explanation) -> None:
@@ -286,7 +168,7 @@ def _print_all(out: Console, found: Sequence[Details], explanation: Explanation)
 
 def _card(each: Details) -> RenderableType:
     heading = Text(plain(each.title), style="bold")
-    heading.append(f"  {plain(_place(each.tpc))}:{each.tpc.column}", style="default not bold")
+    heading.append(f"  {plain(place_of(each.tpc))}:{each.tpc.column}", style="default not bold")
     table = Table(box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
     table.add_column(no_wrap=True, style="dim")
     table.add_column(overflow="fold")

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from pytpc.api.diagnosing import Rankings
-from pytpc.api.missions import find_declared
+from pytpc.api.missions import find_declared, with_names_of
 from pytpc.api.suggesting import suggest_together, what_if_by_type
 from pytpc.base.errors import InputError
 from pytpc.base.wording import Number, plain, show
@@ -98,7 +98,8 @@ def suggest_command(given: _SuggestArguments) -> None:
     if given.types == "ignore":
         found = replace(found, marks=tuple(replace(mark, type=None) for mark in found.marks))
     if value is not None and given.parameter is not None:
-        _show_value(found, static, value, given)
+        named = with_names_of(found, static, given.recording)
+        _show_value(found, named, value, given)
     else:
         _show_suggestions(found, static, given)
 

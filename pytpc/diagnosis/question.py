@@ -37,7 +37,8 @@ class Question:
         reference: a good run of the same build.
         changes: what was changed since the robot worked, newest last; empty if not known. If a
             parameter was changed several times, the oldest change has the value that worked.
-        declared: ranges, types and defaults that parameters are declared with.
+        declared: ranges, types and defaults that parameters are declared with; None: nobody has
+            looked for any.
         flown: values of the parameter in question that were tried and did not help.
         sources: which known values may be suggested.
         kind: the type of error that a replay is about; None: of each mark its own.
@@ -53,7 +54,7 @@ class Question:
     top: int = 5
     reference: Recording | None = None
     changes: Sequence[Change] = ()
-    declared: Sequence[Declared] = ()
+    declared: Sequence[Declared] | None = None
     flown: Sequence[float] = ()
     sources: Collection[Source] = EVERY_SOURCE
     kind: MarkType | None = None
@@ -77,9 +78,10 @@ class Question:
         Raises:
             ValueError: there are several.
         """
-        if len(self.declared) > 1:
+        declared = self.declared or ()
+        if len(declared) > 1:
             raise ValueError("more is declared than of one parameter")
-        return self.declared[0] if self.declared else None
+        return declared[0] if declared else None
 
 
 PLAIN = Question()

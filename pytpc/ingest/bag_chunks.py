@@ -21,9 +21,9 @@ import numpy.typing as npt
 from lz4.frame import LZ4FrameDecompressor  # type: ignore[import-untyped]
 
 from pytpc.base.columns import Int64s
+from pytpc.ingest.magic import BAG_MAGIC
 from pytpc.ingest.spool import Rows
 
-MAGIC = b"#ROSBAG V2.0\n"
 _LENGTH = struct.Struct("<I")
 _LARGEST_CHUNK = 1 << 30
 _LARGEST_HEADER = 1 << 20
@@ -75,7 +75,7 @@ def read_index(stream: BinaryIO) -> BagIndex:
         BrokenBagError: this is no bag, or not one that was closed.
     """
     stream.seek(0)
-    if stream.read(len(MAGIC)) != MAGIC:
+    if stream.read(len(BAG_MAGIC)) != BAG_MAGIC:
         raise BrokenBagError("no bag")
     head = _fields(_read_header(stream))
     if head.get(b"op") != bytes([_HEAD]):
@@ -113,11 +113,11 @@ def find_damage(stream: BinaryIO, size: int) -> str | None:
     A walk over the records, which needs no index: the first is the bag header, whose ``index_pos``
     is 0 until the recorder closes the file.
     """
-    begin = stream.read(len(MAGIC))
-    if begin != MAGIC:
-        if MAGIC.startswith(begin):
+    begin = stream.read(len(BAG_MAGIC))
+    if begin != BAG_MAGIC:
+        if BAG_MAGIC.startswith(begin):
             return f"truncated: the file ends at byte {size}, within its first line"
-        return f'not a ROS 1 bag: "{MAGIC.decode().strip()}" is not at byte 0'
+        return f'not a ROS 1 bag: "{BAG_MAGIC.decode().strip()}" is not at byte 0'
     index: int | None = None
     while (place := stream.tell()) < size:
         try:

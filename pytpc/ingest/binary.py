@@ -38,7 +38,7 @@ from pytpc.ingest.binary_system import (
 from pytpc.ingest.gathering import Channel, Gathering, Progress
 from pytpc.ingest.spool import Rows
 from pytpc.python_runtime import log_layout as layout
-from pytpc.recording.mission import Dropped
+from pytpc.recording.mission import Dropped, ReadName
 
 _IDENTITY = np.dtype([("thread", "<u4"), ("site", "<u4"), ("period", "<u4")])
 
@@ -292,19 +292,32 @@ class _TpcReader:
         for place in self._file.system:
             kept = written_summaries(self._file.load_one(place))
             if unwritten is not None and kept.size:
-                unwritten = unwritten[~np.isin(_identity(unwritten), _identity(kept))]
+                # Few are unwritten, and most that are written are of another time.
+                near = kept[np.isin(kept["period"], unwritten["period"])]
+                unwritten = unwritten[~np.isin(_identity(unwritten), _identity(near))]
             self._hand_in_summaries(kept)
         if unwritten is not None:
             self._hand_in_summaries(unwritten)
 
     def _hand_in_summaries(self, kept: Rows) -> None:
+        self._note_samples(kept)
         rows = summary_rows(kept, self._key_of_site, self._clock, self._last_ns, self._skip)
         rows["node"] = self._node_code
         rows["channel"] = self._channel.code
         self._gathering.summaries.append(rows)
 
+    def _note_samples(self, kept: Rows) -> None:
+        """Note what the policy light has not inspected."""
+        known = (kept["site"] < self._key_of_site.size) & (kept["seen"] <= kept["count"])
+        told = known & (((kept["seen"] > 0) & (kept["seen"] < kept["count"])) | (kept["about"] > 0))
+        for one in kept[told]:
+            code, count, seen = int(self._key_of_site[one["site"]]), one["count"], one["seen"]
+            self._gathering.note_sample(code, int(count), int(seen or count), bool(one["about"]))
+
     def _complaints(self) -> None:
         gathering, header, name = self._gathering, self.header, self._path.name
+        for named in self._system.names:
+            gathering.add_name(ReadName(named.key, self._node, named.name))
         stopped = 0
         for dropped in self._system.dropped(self._node):
             gathering.add_dropped(dropped)

@@ -50,7 +50,8 @@ KEPT = np.dtype(
         ("flops", "<u8"),
         ("begin_ros", "<i8"),
         ("end_ros", "<i8"),
-        ("spare", "<u8", 2),
+        ("seen", "<u8"),
+        ("about", "<u8"),
     ]
 )
 SLOT = np.dtype([("kept", KEPT), ("begun", "<u8"), ("spare", "<u8", 3)])

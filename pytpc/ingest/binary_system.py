@@ -13,6 +13,7 @@ from pytpc.base.columns import Bools, Int32s
 from pytpc.ingest.binary_chunks import KEPT, RECORD, SLOT
 from pytpc.ingest.binary_clock import Clock
 from pytpc.ingest.gathering import SUMMARY_ROW, Gathering
+from pytpc.ingest.rosout_line import Malformed, Named, as_text, parse_name
 from pytpc.ingest.spool import Rows
 from pytpc.python_runtime import log_layout as layout
 from pytpc.recording.mission import Dropped
@@ -37,6 +38,7 @@ class SystemRecords:
     keys: dict[int, str] = field(default_factory=dict)
     syncs: list[tuple[int, int]] = field(default_factory=list)
     drops: list[tuple[int, int, int, int]] = field(default_factory=list)
+    names: list[Named] = field(default_factory=list)
     torn: int = 0
 
     def key_codes(self, gathering: Gathering) -> Int32s:
@@ -76,6 +78,13 @@ def read_system(chunk: Chunk, place: int, system: SystemRecords, skip: Skip) -> 
             wrong = _site(system, site, text)
             if wrong is not None:
                 skip(f"{wrong} at byte {place + begin}")
+        elif kind == layout.NAME:
+            length = int(record["steady"]) & 0xFFFFFFFF
+            found = parse_name(as_text(data[begin + _HEAD : begin + _HEAD + length]))
+            if isinstance(found, Malformed):
+                skip(f"{found.what} at byte {place + begin}")
+            else:
+                system.names.append(found)
         elif kind == layout.SYNC:
             real = int.from_bytes(data[begin + 16 : begin + 24], "little", signed=True)
             system.syncs.append((int(record["steady"]), real))
@@ -93,12 +102,12 @@ def read_system(chunk: Chunk, place: int, system: SystemRecords, skip: Skip) -> 
 def written_summaries(chunk: Chunk) -> Rows:
     """The summaries of a chunk of system records, as ``KEPT``."""
     data = chunk.tobytes()
-    begins = [
-        begin for kind, begin, _ in _records(data, 0, lambda _: None) if kind == layout.SUMMARY
+    runs = [
+        np.frombuffer(data, KEPT, (end - begin) // KEPT.itemsize, begin)
+        for kind, begin, end in _records(data, 0, lambda _: None)
+        if kind == layout.SUMMARY
     ]
-    places = np.array(begins, np.int64)[:, None] + np.arange(KEPT.itemsize)
-    kept: Rows = chunk[places].view(KEPT).reshape(-1)
-    return kept
+    return np.concatenate([np.empty(0, KEPT), *runs])
 
 
 def open_summaries(chunk: Chunk) -> tuple[Rows, int]:
@@ -158,22 +167,31 @@ def _sound(kept: Rows, sites: int, skip: Skip) -> Bools:
 
 
 def _records(data: bytes, place: int, skip: Skip) -> Iterator[tuple[int, int, int]]:
-    """Kind, first byte in the chunk, and the byte behind it of each record, until one is empty."""
+    """Kind, first byte in the chunk, and the byte behind it of each record, until one is empty.
+
+    Summaries that follow one another are given as one: under ``edges`` nearly all records are.
+    """
     begin = layout.CHUNK_HEADER_BYTES
     while begin < len(data) and any(data[begin : begin + 4]):
         kind = data[begin]
         length = layout.RECORD_BYTES
-        if kind == layout.SITE:
+        if kind in {layout.SITE, layout.NAME}:
             key_length = int.from_bytes(data[begin + 8 : begin + 12], "little")
             length *= 1 + max(0, -(-(key_length - _HEAD) // layout.RECORD_BYTES))
             if key_length > _LONGEST_KEY:
-                skip(f"a key of {key_length} bytes at byte {place + begin}")
+                skip(f"a text of {key_length} bytes at byte {place + begin}")
                 return
         elif kind == layout.SUMMARY:
             length = KEPT.itemsize
         if begin + length > len(data):
             skip(f"a record is cut off at byte {place + begin}")
             return
+        if kind == layout.SUMMARY:
+            kinds = np.frombuffer(data, np.uint8, -1, begin)[:: KEPT.itemsize]
+            other = np.flatnonzero(kinds != layout.SUMMARY)
+            # The last one may be cut off.
+            count = int(other[0]) if other.size else (len(data) - begin) // length
+            length *= min(count, (len(data) - begin) // length)
         yield kind, begin, begin + length
         begin += length
 

@@ -12,7 +12,8 @@ import struct
 from pathlib import Path
 from typing import Any
 
-from pytpc.ingest.bag_chunks import MAGIC, BrokenBagError, messages, read_index
+from pytpc.ingest.bag_chunks import BrokenBagError, messages, read_index
+from pytpc.ingest.magic import BAG_MAGIC
 from pytpc.recording.declaration import Declared, RawValues, make_declared
 
 _TYPE = "dynamic_reconfigure/msg/ConfigDescription"
@@ -30,7 +31,7 @@ def read_declared_bag(path: Path) -> tuple[list[Declared], list[str]]:
     last: dict[str, bytes] = {}
     try:
         with path.open("rb") as stream:
-            if stream.read(len(MAGIC)) != MAGIC:
+            if stream.read(len(BAG_MAGIC)) != BAG_MAGIC:
                 return [], []
             index = read_index(stream)
             topics = {

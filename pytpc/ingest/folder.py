@@ -47,6 +47,8 @@ def read_folder_into(
     gathering.lost.update(recording.lost)
     for dropped in recording.dropped:
         gathering.add_dropped(dropped)
+    for name in recording.names:
+        gathering.add_name(name)
     for record in recording.malformed_first:
         gathering.skip(record.topic, record.time_ns, record.what, record.text)
     gathering.malformed += recording.malformed - len(recording.malformed_first)

@@ -15,10 +15,12 @@ from typing import Literal
 import numpy as np
 
 from pytpc.base.columns import Bools, Floats, Int32s, Int64s, WordTable
+from pytpc.base.wording import many
+from pytpc.ingest.short_summary import ShortSummary
 from pytpc.ingest.spool import RUN_ROWS, Spool
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark, MarkMessages
-from pytpc.recording.mission import Dropped, MalformedRecord
+from pytpc.recording.mission import Dropped, MalformedRecord, ReadName
 from pytpc.recording.summaries import Summaries, Summary
 
 Progress = Callable[[int, int], None]
@@ -38,6 +40,7 @@ _SHOWN_TEXT = 200
 _HELD_SUMMARIES = 4096
 _LARGEST_TABLE = 1 << 20
 MOST_CHANNELS = 1 << 16
+MOST_NAMES = 1 << 20
 
 
 class WordCodes:
@@ -125,6 +128,10 @@ class Gathering:
         self.lost: Counter[str] = Counter()
         self.dropped: Counter[tuple[str, str, str]] = Counter()
         self.dropped_flops: Counter[tuple[str, str, str]] = Counter()
+        self.names: dict[ReadName, None] = {}
+        self._sampled: set[int] = set()
+        self._about: set[int] = set()
+        self._uninspected = 0
         self.without_reports: list[str] = []
         self.notes: list[str] = []
         self.late_notes: list[str] = []
@@ -185,6 +192,36 @@ class Gathering:
         if self._held_count >= _HELD_SUMMARIES:
             self.flush()
 
+    def add_short(self, channel: Channel, short: ShortSummary) -> None:
+        """Take in a summary of the policy ``light``."""
+        summary = short.summary
+        self.add_summary(channel, summary)
+        self.note_sample(self.keys.code(summary.key), summary.count, short.seen, short.about)
+
+    def note_sample(self, key: int, count: int, seen: int, about: bool) -> None:
+        """Note for ``light_notes`` that ``seen`` of ``count`` evaluations were inspected."""
+        if count > seen:
+            self._sampled.add(key)
+            self._uninspected += count - seen
+        if about:
+            self._about.add(key)
+
+    def light_notes(self) -> list[str]:
+        """What the policy ``light`` left out, in sentences."""
+        notes = []
+        if self._sampled:
+            where = many(len(self._sampled), "comparison")
+            notes.append(
+                f"{many(self._uninspected, 'evaluation')} of {where} in hot loops were counted and"
+                " not inspected (policy light): their extremes and means are those of a sample"
+            )
+        if self._about:
+            notes.append(
+                f"the numbers of evaluations or flops of {many(len(self._about), 'comparison')} are"
+                " estimates: several threads evaluate them, or they change too often"
+            )
+        return notes
+
     def add_summaries(self, channel: int, table: Summaries) -> None:
         """Take in the summaries of the channel with this code."""
         rows = np.empty(len(table), SUMMARY_ROW)
@@ -200,6 +237,11 @@ class Gathering:
         word = (dropped.key, dropped.node, dropped.why)
         self.dropped[word] += dropped.count
         self.dropped_flops[word] += dropped.flops
+
+    def add_name(self, name: ReadName) -> None:
+        """Take in the name of a parameter; nodes report each several times."""
+        if len(self.names) < MOST_NAMES:
+            self.names[name] = None
 
     def skip(self, topic: str, time_ns: int, what: str, text: str, turn: int | None = None) -> None:
         """Count a record that cannot be read; the first 20 are kept, in the order of ``turn``."""

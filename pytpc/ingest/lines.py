@@ -15,13 +15,22 @@ from pytpc.ingest.rosout_line import (
     BatchHead,
     Drop,
     Malformed,
+    Named,
     as_text,
     parse_other,
     parse_report,
     parse_stamped,
 )
+from pytpc.ingest.short_summary import (
+    SPAN,
+    ShortSummary,
+    Span,
+    is_short,
+    parse_short,
+    parse_span,
+)
 from pytpc.recording.events import Report
-from pytpc.recording.mission import Dropped
+from pytpc.recording.mission import Dropped, ReadName
 from pytpc.recording.summaries import Summary
 
 
@@ -46,6 +55,7 @@ class Lines:
         self._nodes: list[int] = []
         self._turns: list[int] = []
         self._places: list[int] = []
+        self._span: Span | None = None
         self.unstamped = 0
 
     def add(self, line: bytes, time_ns: int, node: int, number: int = 0) -> None:
@@ -75,15 +85,32 @@ class Lines:
             self.flush()
 
     def add_other(self, text: str, node: str, time_ns: int = 0, number: int = 0) -> None:
-        """Read a line about a summary or about dropped reports; ``time_ns`` is for complaints."""
+        """Read a line about a summary, dropped reports or a name; ``time_ns`` is for complaints."""
+        if is_short(text):
+            self._add_short(text, node, time_ns, number)
+            return
         found = parse_other(text, node, stamped=self._stamped)
         if isinstance(found, Summary):
             self.gathering.add_summary(self.channel, found)
         elif isinstance(found, Drop):
             self._batches.drop(node, found)
+        elif isinstance(found, Named):
+            self.gathering.add_name(ReadName(found.key, node, found.name))
         else:
             what = "time is missing" if found is None else f"{found.what}, column {found.column}"
             self._skip(what, time_ns, text, number)
+
+    def _add_short(self, text: str, node: str, time_ns: int, number: int) -> None:
+        found: Span | ShortSummary | Malformed
+        if text.startswith(SPAN):
+            found = parse_span(text)
+            self._span = found if isinstance(found, Span) else None
+        else:
+            found = parse_short(text, self._span, node)
+        if isinstance(found, Malformed):
+            self._skip(f"{found.what}, column {found.column}", time_ns, text, number)
+        elif isinstance(found, ShortSummary):
+            self.gathering.add_short(self.channel, found)
 
     def flush(self) -> None:
         """Hand in everything that was added."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import TypeVar
 
@@ -73,9 +74,17 @@ class Merged:
         if held is not None:
             yield from self._each_once(held)
 
+    @cached_property
+    def _may_repeat(self) -> bool:
+        """Whether a summary may have come twice; not if each channel is a process's own file."""
+        own = [(one.way, one.process) for one in self.gathering.channels]
+        return len(own) > 1 and (
+            len(set(own)) < len(own) or any(way != "file" or not who for way, who in own)
+        )
+
     def _each_once(self, rows: Rows) -> Iterator[Rows]:
         """Drop summaries that came by two channels: they are equal in all fields."""
-        if len(self.gathering.channels) > 1:
+        if self._may_repeat:
             rest = [name for name in SUMMARY_ROW.names or () if name != "channel"]
             _, first = np.unique(_packed(rows[rest]), return_index=True)
             rows = rows[np.sort(first)]
@@ -98,6 +107,7 @@ class Merged:
             *gathering.notes,
             *self._once.notes(),
             *gathering.late_notes,
+            *gathering.light_notes(),
             *clock_notes(gathering.channels),
             *self._clock_notes(marks),
         ]
@@ -113,6 +123,7 @@ class Merged:
             notes=tuple(notes),
             summaries=summaries,
             dropped=gathering.dropped_list,
+            names=tuple(sorted(gathering.names)),
         )
 
     def save(self, folder: Path, told: Progress | None = None) -> Recording:

@@ -19,13 +19,16 @@ from pytpc.ingest.lines import Batches, Lines
 from pytpc.ingest.losses import LossCounter
 from pytpc.ingest.ros1 import LogMessage, decode_logs
 from pytpc.ingest.rosout_line import (
+    BATCH_PREFIX,
     DROPPED_PREFIX,
+    NAME_PREFIX,
     PREFIX,
     SUMMARY_PREFIX,
     Malformed,
     as_text,
     parse_batch,
 )
+from pytpc.ingest.short_summary import is_short
 from pytpc.recording.marks import MarkMessages
 
 ROSOUT = "/rosout"
@@ -33,10 +36,11 @@ ROSOUT_AGG = "/rosout_agg"
 REPORTS = "/threshold_information"
 
 _PREFIX = PREFIX.encode()
+_BATCH = BATCH_PREFIX.encode()
 _BEGIN = b"threshold_"
 _BEGINNING_NS = 1_000_000_000
-_OTHERS = (SUMMARY_PREFIX.encode(), DROPPED_PREFIX.encode())
-_WITH_TIME = tuple(f",{prefix}".encode() for prefix in (SUMMARY_PREFIX, DROPPED_PREFIX))
+_OTHERS = tuple(prefix.encode() for prefix in (SUMMARY_PREFIX, DROPPED_PREFIX, NAME_PREFIX))
+_WITH_TIME = tuple(b"," + prefix for prefix in _OTHERS)
 
 
 class _AnyConnection(Protocol):
@@ -136,7 +140,7 @@ class Messages:
         self._latched = latched
         self._losses_of_nodes: LossCounter[bytes] = LossCounter()
         self._losses_of_senders: LossCounter[bytes] = LossCounter()
-        self._lines: dict[Way, Lines] = {}
+        self._lines: dict[tuple[Way, bool], Lines] = {}
         self._nodes: dict[bytes, int] = {}
         self._unstamped = _Unstamped()
 
@@ -231,6 +235,8 @@ class Messages:
             stamp_ns = log.stamp_ns or time_ns
             lines = self._lines_of(way, topic, stamped=False, prefix=PREFIX)
             lines.add(log.msg[len(_PREFIX) :], stamp_ns, self._node(log.node))
+        elif log.msg.startswith(_BATCH):
+            self._batch(way, as_text(log.node), time_ns, log.msg[len(_BATCH) :])
         elif log.msg.startswith(_OTHERS) and topic == ROSOUT:
             # The rosout node passes on the same lines.
             lines = self._lines_of(way, topic, stamped=False, prefix=PREFIX)
@@ -241,24 +247,31 @@ class Messages:
         if not text.startswith(b"#"):
             self._stamped("topic", caller, time_ns, text)
             return
+        self._batch("batch", caller, time_ns, text)
+
+    def _batch(self, way: Way, caller: str, time_ns: int, text: bytes) -> None:
         head, _, rest = text.partition(b"\n")
+        topic = REPORTS if way == "batch" else ROSOUT
         batch = parse_batch(as_text(head))
         lines = [line for line in rest.split(b"\n") if line]
         if isinstance(batch, Malformed):
             self._gathering.skip(
-                REPORTS, time_ns, f"{batch.what}, column {batch.column}", as_text(head)
+                topic, time_ns, f"{batch.what}, column {batch.column}", as_text(head)
             )
         else:
             self._batches.see(caller, batch)
             said = sum(1 for line in lines if not _is_other(line))
             if said != batch.count:
                 what = f"the first line announces {batch.count} reports, {said} found"
-                self._gathering.skip(REPORTS, time_ns, what, as_text(head))
+                self._gathering.skip(topic, time_ns, what, as_text(head))
         for number, line in enumerate(lines, start=2):
-            self._stamped("batch", caller, time_ns, line, number)
+            # The rosout node passes on the same batch.
+            if way != "aggregate" or not line.startswith(_WITH_TIME[1], line.find(b",")):
+                self._stamped(way, caller, time_ns, line, number)
 
     def _stamped(self, way: Way, caller: str, time_ns: int, line: bytes, number: int = 0) -> None:
-        lines = self._lines_of(way, REPORTS, stamped=True)
+        topic = ROSOUT if way in {"log", "aggregate"} else REPORTS
+        lines = self._lines_of(way, topic, stamped=True)
         if _is_other(line):
             lines.add_other(as_text(line), caller, time_ns, number)
         else:
@@ -279,14 +292,14 @@ class Messages:
         return code
 
     def _lines_of(self, way: Way, topic: str, *, stamped: bool, prefix: str = "") -> Lines:
-        lines = self._lines.get(way)
+        lines = self._lines.get((way, stamped))
         if lines is None:
             channel = self._gathering.channel(self._source, way, topic)
             lines = Lines(self._batches, channel, stamped=stamped, prefix=prefix)
-            self._lines[way] = lines
+            self._lines[way, stamped] = lines
         return lines
 
 
 def _is_other(line: bytes) -> bool:
     comma = line.find(b",")
-    return line.startswith(_WITH_TIME, comma) or line.startswith(_OTHERS)
+    return is_short(line) or line.startswith(_WITH_TIME, comma) or line.startswith(_OTHERS)

@@ -8,20 +8,16 @@ import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 
 from pytpc.base.errors import InputError, TpcError
 from pytpc.base.wording import many
-from pytpc.ingest.bag import read_bag_into
-from pytpc.ingest.bag_chunks import MAGIC as BAG_MAGIC
-from pytpc.ingest.binary import read_binary
 from pytpc.ingest.duplicates import TOLERANCE_NS
 from pytpc.ingest.folder import read_folder_into
 from pytpc.ingest.gathering import Gathering, Progress
+from pytpc.ingest.magic import BAG_MAGIC, MCAP_MAGIC, SQLITE_MAGIC, TPC_MAGIC
 from pytpc.ingest.merged import Merged
-from pytpc.ingest.ros2_bag import MCAP_MAGIC, SQLITE_MAGIC, read_ros2_into
-from pytpc.ingest.text import read_text_into
-from pytpc.python_runtime.log_layout import MAGIC as TPC_MAGIC
 from pytpc.recording.marks import Mark, joined, marks_beside, read_marks
 from pytpc.recording.mission import (
     EVENTS_FILE,
@@ -33,6 +29,13 @@ from pytpc.recording.mission import (
 )
 
 Reader = Callable[[Path, Gathering, Progress | None], None]
+_BY_MAGIC = {
+    TPC_MAGIC: ("binary", "read_binary"),
+    BAG_MAGIC[:8]: ("bag", "read_bag_into"),
+    MCAP_MAGIC: ("ros2_bag", "read_ros2_into"),
+    SQLITE_MAGIC: ("ros2_bag", "read_ros2_into"),
+}
+"""Module and function of the reader of each format."""
 ROS2_FILE = "metadata.yaml"
 _FIRST = 4096
 # A spreadsheet may have changed the commas; the reader of marks then says what is wrong.
@@ -177,29 +180,30 @@ def reader_of(path: Path) -> Reader:
         InputError: it cannot be read, or its format is unknown.
     """
     if path.is_dir():
-        return read_folder_into if is_converted(path) else read_ros2_into
+        return read_folder_into if is_converted(path) else _reader("ros2_bag", "read_ros2_into")
     try:
         with path.open("rb") as stream:
             first = stream.read(_FIRST)
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror or error}", path) from error
-    for magic, reader in (
-        (TPC_MAGIC, read_binary),
-        (BAG_MAGIC[:8], read_bag_into),
-        (MCAP_MAGIC, read_ros2_into),
-        (SQLITE_MAGIC, read_ros2_into),
-    ):
+    for magic, (module, name) in _BY_MAGIC.items():
         if first.startswith(magic):
-            return reader
+            return _reader(module, name)
     if not first:
         raise InputError("the file is empty", path)
     if BAG_MAGIC.startswith(first) or path.suffix == ".bag":
-        return read_bag_into
+        return _reader("bag", "read_bag_into")
     if _MARKS.match(first):
         return _read_marks_into
     if b"\0" in first:
         raise InputError("neither a bag, nor a .tpc file, nor text", path)
-    return read_text_into
+    return _reader("text", "read_text_into")
+
+
+def _reader(module: str, name: str) -> Reader:
+    """A reader, imported when a file needs it: those of bags take longer than a short mission."""
+    found: Reader = getattr(import_module(f"pytpc.ingest.{module}"), name)
+    return found
 
 
 def _beside(path: Path) -> tuple[Mark, ...]:

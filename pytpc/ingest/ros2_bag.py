@@ -18,10 +18,8 @@ from rosbags.rosbag2.storage_sqlite3 import Sqlite3Reader
 from pytpc.base.errors import InputError
 from pytpc.ingest import ros2
 from pytpc.ingest.gathering import Gathering, Progress
+from pytpc.ingest.magic import MCAP_MAGIC
 from pytpc.ingest.messages import REPORTS, ROSOUT, Decoders, Messages, wanted
-
-MCAP_MAGIC = b"\x89MCAP0\r\n"
-SQLITE_MAGIC = b"SQLite format 3\0"
 
 _TYPES = {ROSOUT: {"rcl_interfaces/msg/Log"}, REPORTS: {"std_msgs/msg/String"}}
 _TIMES = {"builtin_interfaces/msg/Time", "std_msgs/msg/Time"}

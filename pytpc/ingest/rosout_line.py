@@ -21,6 +21,8 @@ from pytpc.recording.summaries import Summary
 PREFIX = "threshold_information:"
 SUMMARY_PREFIX = "threshold_summary:"
 DROPPED_PREFIX = "threshold_dropped:"
+NAME_PREFIX = "threshold_name:"
+BATCH_PREFIX = "threshold_batch:"
 LATEST_NS = 2**63 - 1
 
 TIME = r"[0-9]{1,10}\.[0-9]{1,9}"
@@ -34,7 +36,8 @@ _COUNT = r"[0-9]{1,18}"
 _SUMMARY = re.compile(
     rf"({KEY}),({_BOOL}),cmp:({DOUBLE}),thresh:({DOUBLE}),res:({_BOOL}),count:({_COUNT}),"
     rf"flops:({_COUNT}),diff:({DOUBLE});({DOUBLE});({DOUBLE}),abs:({DOUBLE}),"
-    rf"range:({DOUBLE});({DOUBLE}),far:({_COUNT}),odd:({_COUNT}),span:({TIME});({TIME}){_END}"
+    rf"range:({DOUBLE});({DOUBLE}),far:({_COUNT}),odd:({_COUNT}),span:({TIME});({TIME})"
+    rf"(?:,seen:{_COUNT})?(?:,about)?{_END}"
 )
 _DROPPED = re.compile(
     rf"({KEY})?,count:({_COUNT}),flops:({_COUNT}),why:(site|process|nested|stopped){_END}"
@@ -42,6 +45,7 @@ _DROPPED = re.compile(
 _BATCH = re.compile(
     rf"#seq:({_COUNT}),count:({_COUNT}),dropped:({_COUNT}),pid:({_COUNT}),steady:({TIME}){_END}"
 )
+_NAME = re.compile(rf"({KEY}),(/[A-Za-z0-9_/~.]{{1,1000}}){_END}")
 _STAMPED = re.compile(rf"({TIME}),")
 BOOLS = {"0": False, "1": True, "False": False, "True": True}
 
@@ -65,6 +69,14 @@ class Drop:
     count: int
     flops: int
     why: str
+
+
+@dataclass(frozen=True, slots=True)
+class Named:
+    """The full name of the parameter that the read with this key has read."""
+
+    key: str
+    name: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,8 +133,8 @@ def parse_stamped(text: str) -> tuple[int, Report] | Malformed:
 
 def parse_other(
     text: str, node: str, *, stamped: bool = False
-) -> Summary | Drop | Malformed | None:
-    """Read ``threshold_summary:...`` or ``threshold_dropped:...``, behind a time if ``stamped``.
+) -> Summary | Drop | Named | Malformed | None:
+    """Read a line about a summary, dropped reports or a name, behind a time if ``stamped``.
 
     Returns:
         What it says; ``Malformed`` where the text only begins like one; None for anything else.
@@ -132,19 +144,35 @@ def parse_other(
         return None
     start = 0 if stamp is None else stamp.end()
     if text.startswith(SUMMARY_PREFIX, start):
-        place = start + len(SUMMARY_PREFIX)
-        found = _SUMMARY.fullmatch(text, place)
-        if found is None:
-            return Malformed("a summary's fields are expected", place + 1)
-        return _summary(found, node)
+        return _parse_summary(text, start + len(SUMMARY_PREFIX), node)
     if text.startswith(DROPPED_PREFIX, start):
-        place = start + len(DROPPED_PREFIX)
-        found = _DROPPED.fullmatch(text, place)
-        if found is None:
-            return Malformed("KEY,count:N,flops:F,why:W is expected", place + 1)
-        key, count, flops, why = found.groups()
-        return Drop((key or "").lower(), int(count), int(flops), why)
+        return _parse_drop(text, start + len(DROPPED_PREFIX))
+    if text.startswith(NAME_PREFIX, start):
+        return parse_name(text, start + len(NAME_PREFIX))
     return None
+
+
+def _parse_summary(text: str, place: int, node: str) -> Summary | Malformed:
+    found = _SUMMARY.fullmatch(text, place)
+    if found is None:
+        return Malformed("a summary's fields are expected", place + 1)
+    return _summary(found, node)
+
+
+def _parse_drop(text: str, place: int) -> Drop | Malformed:
+    found = _DROPPED.fullmatch(text, place)
+    if found is None:
+        return Malformed("KEY,count:N,flops:F,why:W is expected", place + 1)
+    key, count, flops, why = found.groups()
+    return Drop((key or "").lower(), int(count), int(flops), why)
+
+
+def parse_name(text: str, place: int = 0) -> Named | Malformed:
+    """Read ``KEY,/full/name`` from this place on."""
+    found = _NAME.fullmatch(text, place)
+    if found is None:
+        return Malformed("KEY,/full/name is expected", place + 1)
+    return Named(found[1].lower(), found[2])
 
 
 def parse_batch(text: str) -> BatchHead | Malformed:

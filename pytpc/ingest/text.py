@@ -16,6 +16,7 @@ from pytpc.base.wording import many
 from pytpc.ingest.gathering import Gathering, Progress
 from pytpc.ingest.lines import Batches, Lines
 from pytpc.ingest.rosout_line import (
+    BATCH_PREFIX,
     LATEST_NS,
     PREFIX,
     BatchHead,
@@ -23,6 +24,7 @@ from pytpc.ingest.rosout_line import (
     nanoseconds,
     parse_batch,
 )
+from pytpc.ingest.short_summary import is_short
 
 _BLOCK = 1 << 20
 _LONGEST = 1 << 16
@@ -30,12 +32,14 @@ _LONGEST = 1 << 16
 _REPORT_LIKE = re.compile(rb"[01e][\s,;\"]+cmp:.*thresh:.*res:")
 _CSV_FORM = "TIME,KEY,RESULT,cmp:C,thresh:T,res:R with decimals in TIME"
 _PREFIX = PREFIX.encode()
+_BATCH = BATCH_PREFIX.encode()
+_IN_BATCH = re.compile(rb"[@~]|[0-9]{1,10}\.[0-9]{1,9},")
 _COLOUR = re.compile(rb"\x1b\[[0-9;]*[A-Za-z]")
 _TIME = re.compile(
     rb"(?<![0-9.])([0-9]{1,10}\.[0-9]{1,9})(?:, *([0-9]{1,10}\.[0-9]{1,9}))?(?![0-9.])"
 )
 _NODE = re.compile(rb"(?:^|[\[\s(])(/[A-Za-z][A-Za-z0-9_/]*)(?=[\]\s:),])")
-_BEGIN = re.compile(rb"threshold_(?:information|summary|dropped):")
+_BEGIN = re.compile(rb"threshold_(?:information|summary|dropped|batch|name):")
 _BOM = b"\xef\xbb\xbf"
 _CSV = re.compile(rb"[0-9]{1,10}\.[0-9]{1,9},|#seq:")
 
@@ -66,7 +70,8 @@ def read_text_into(path: Path, gathering: Gathering, on_progress: Progress | Non
 def _reader_for(path: Path, gathering: Gathering) -> _Taker:
     with path.open("rb") as stream:
         first = stream.read(_LONGEST).removeprefix(_BOM).split(b"\n", 2)[:2]
-    is_csv = any(_CSV.match(line) for line in first)
+    # The second line of a log may be that of a batch.
+    is_csv = any(_CSV.match(line) for line in first) and _BATCH not in first[0]
     return (_Csv if is_csv else _Log)(path, gathering)
 
 
@@ -105,10 +110,16 @@ class _Log(_Taker):
         super().__init__(path, gathering, stamped=False)
         self._last_ns = 0
         self._without_time = 0
+        self._stamped = Lines(self.batches, self.channel, stamped=True)
+        self._batch_of: str | None = None
 
     def take(self, number: int, line: bytes) -> None:
         if b"\x1b" in line:
             line = _COLOUR.sub(b"", line)
+        if self._batch_of is not None and _IN_BATCH.match(line):
+            self._in_batch(number, line, self._batch_of)
+            return
+        self._batch_of = None
         found = _BEGIN.search(line)
         front = line if found is None else line[: found.start()]
         stamp = _TIME.search(front)
@@ -129,11 +140,28 @@ class _Log(_Taker):
         if rest.startswith(_PREFIX):
             code = self.gathering.nodes.code(node)
             self.lines.add(rest[len(_PREFIX) :], self._last_ns, code, number)
+        elif rest.startswith(_BATCH):
+            batch = parse_batch(as_text(rest[len(_BATCH) :]))
+            self._batch_of = node
+            if isinstance(batch, BatchHead):
+                self.batches.see(node, batch)
+            else:
+                what = f"line {number}: {batch.what}, column {batch.column}"
+                self.gathering.skip(self.channel.topic, 0, what, as_text(rest))
         else:
             self.others += 1
             self.lines.add_other(as_text(rest), node, number=number)
 
+    def _in_batch(self, number: int, line: bytes, node: str) -> None:
+        """Take a line of the batch that a line before has begun."""
+        if is_short(line) or _BEGIN.search(line):
+            self.others += 1
+            self._stamped.add_other(as_text(line), node, number=number)
+        else:
+            self._stamped.add(line, 0, self.gathering.nodes.code(node), number)
+
     def close(self) -> None:
+        self._stamped.flush()
         super().close()
         if self._without_time:
             self.gathering.late_notes.append(
@@ -159,7 +187,7 @@ class _Csv(_Taker):
             else:
                 what = f"line {number}: {batch.what}, column {batch.column}"
                 self.gathering.skip(self.channel.topic, 0, what, as_text(line))
-        elif _BEGIN.search(line):
+        elif is_short(line) or _BEGIN.search(line):
             self.others += 1
             self.lines.add_other(as_text(line), self.node, number=number)
         else:

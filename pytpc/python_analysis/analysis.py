@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import gc
 import uuid
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, fields
 from importlib.metadata import PackageNotFoundError, version
+from typing import TypeVar
 
 from pytpc.base.errors import InputError
 from pytpc.python_analysis.budget import SECONDS, Budget, BudgetSpentError, what_failed
@@ -45,6 +46,7 @@ from pytpc.static.link_unit import (
 # The passes make the keys of comparisons in the same namespace.
 _NAMESPACE = uuid.UUID("6b0f7a52-2c9e-4d61-9a37-8f15c3405ed8")
 _AT_MOST = 200
+_Place = TypeVar("_Place")
 
 
 @dataclass
@@ -75,7 +77,7 @@ def analyse(program: Program, rules: Rules) -> Analysed:
     follower.decide()
     fixed = find_constants(follower) if rules.constants else []
     found_slice = Slicer(flow, leaving, follower.outcomes.selecting).run(exposed)
-    gatherer = Gatherer(follower, found_slice)
+    gatherer = Gatherer(follower, found_slice, counts_shown=rules.profile != "thesis")
     found, others = gatherer.run()
     found += gatherer.constants(fixed, [*found, *others])
     return Analysed(program, rules, flow, reads, exposed, follower, found_slice, found, others)
@@ -162,8 +164,8 @@ class Writer:
             parameters=tuple(reads),
             exposing=tuple(self._exposing()),
             comparisons=tuple(comparisons),
-            not_exposed=tuple(not_exposed[:_AT_MOST]),
-            blind_spots=tuple(spots[:_AT_MOST]),
+            not_exposed=_listed(not_exposed, lambda found: found.source),
+            blind_spots=_listed(spots, _of_parameter),
         )
 
     def _counts(self, comparisons: list[Comparison], others: int, spots: int, reads: int) -> Counts:
@@ -335,6 +337,22 @@ class Writer:
             kind, parameter, function.module.path, line, column, function.qualname, what,
             self._source(at, line),
         )  # fmt: skip
+
+
+def _listed(found: Iterable[_Place], of: Callable[[_Place], object]) -> tuple[_Place, ...]:
+    """Not too many, but one for each that ``of`` names, so that no parameter is silent."""
+    kept: list[_Place] = []
+    named: set[object] = set()
+    for number, each in enumerate(found):
+        name = of(each)
+        if number < _AT_MOST or (name is not None and name not in named):
+            kept.append(each)
+        named.add(name)
+    return tuple(kept)
+
+
+def _of_parameter(spot: BlindSpot) -> object:
+    return None if spot.parameter is None else (spot.kind, spot.parameter)
 
 
 def _order(found: Found) -> tuple[object, ...]:

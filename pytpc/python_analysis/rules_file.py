@@ -21,6 +21,19 @@ class Argument:
 
 
 @dataclass(frozen=True)
+class ConfigRule:
+    """A call whose ``callback`` gets an object of parameters as its argument number ``config``.
+
+    ``namespace`` names them; if ``is_private``, it is below the node's own name.
+    """
+
+    callback: Argument
+    config: int
+    namespace: Argument
+    is_private: bool
+
+
+@dataclass(frozen=True)
 class LibraryComparison:
     """The comparison inside a library function.
 
@@ -50,7 +63,7 @@ class Rules:
     exposing: set[str] = field(default_factory=set)
     topics: dict[str, Argument] = field(default_factory=dict)
     makes: dict[str, str] = field(default_factory=dict)
-    configs: dict[str, tuple[Argument, int]] = field(default_factory=dict)
+    configs: dict[str, ConfigRule] = field(default_factory=dict)
     services: dict[str, Argument] = field(default_factory=dict)
     lists: dict[str, tuple[Argument, Argument]] = field(default_factory=dict)
     values: dict[str, float] = field(default_factory=dict)
@@ -122,8 +135,12 @@ def _add_row(rules: Rules, name: str, row: dict[str, Any]) -> None:
         case "makes":
             rules.makes[function] = row["class"]
         case "configs":
-            callback = Argument(row["callback"], row.get("keyword"))
-            rules.configs[function] = (callback, row.get("config", 0))
+            rules.configs[function] = ConfigRule(
+                Argument(row["callback"], row.get("keyword")),
+                row.get("config", 0),
+                Argument(row.get("namespace"), row.get("namespace_keyword")),
+                row.get("private", False),
+            )
         case "services":
             rules.services[function] = Argument(row["callback"], row.get("keyword"))
         case "lists":

@@ -11,35 +11,43 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pytpc.python_runtime.errors import warn
 
-SINKS = ("rosout", "topic", "file", "off")
-POLICIES = ("every", "edges")
-NAMES = (
-    "sink",
-    "policy",
-    "period",
-    "site_cap",
-    "process_cap",
-    "folder",
-    "file_limit",
-    "file_reserve",
-)
+SINKS = ("auto", "rosout", "topic", "file", "off")
+POLICIES = ("every", "edges", "light")
+# Everybody who reaches the ROS master can set a parameter: where files go and how large they grow
+# is for the environment alone.
+PARAMETERS = ("sink", "policy", "period", "site_cap", "process_cap")
+NAMES = (*PARAMETERS, "folder", "file_limit", "file_reserve")
 if TYPE_CHECKING:
     Value = Any
 
 _LARGEST = 1 << 40
+# Period, reports per second of a comparison, and of the process.
+_OF_LIGHT = (1_000_000_000, 10, 50)
+_OF_OTHERS = (100_000_000, 0, 0)
 
 
 class Config(NamedTuple):
-    """All settings. Caps are in reports a second, limits in MiB; 0 means no cap and no limit."""
+    """All settings. Caps are in reports a second, limits in MiB; 0 means no cap and no limit.
 
-    sink: str = "rosout"
-    policy: str = "every"
-    period_ns: int = 100_000_000
-    site_cap: int = 0
-    process_cap: int = 0
+    ``policy`` is empty, and the three numbers after it are -1, if they were not chosen.
+    """
+
+    sink: str = "auto"
+    policy: str = ""
+    period_ns: int = -1
+    site_cap: int = -1
+    process_cap: int = -1
     folder: str = ""
     file_limit: int = 4096
     file_reserve: int = 256
+
+    def filled_in(self) -> Config:
+        """The settings with the usual values for what was not chosen."""
+        policy = self.policy or ("light" if self.sink == "auto" else "every")
+        usual = _OF_LIGHT if policy == "light" else _OF_OTHERS
+        chosen = (self.period_ns, self.site_cap, self.process_cap)
+        period, site, process = (b if a < 0 else a for a, b in zip(chosen, usual))
+        return self._replace(policy=policy, period_ns=period, site_cap=site, process_cap=process)
 
 
 def parsed(name: str, text: str) -> tuple[dict[str, Value] | None, str]:
@@ -64,11 +72,16 @@ def parsed(name: str, text: str) -> tuple[dict[str, Value] | None, str]:
     return None, "there is no such setting"
 
 
+def variable_of(name: str) -> str:
+    """The variable of the environment for a setting."""
+    return f"TPC_{name.upper()}"
+
+
 def of_environment() -> Config:
     """The defaults, changed by ``TPC_SINK`` and the other variables."""
     config = Config()
     for name in NAMES:
-        variable = f"TPC_{name.upper()}"
+        variable = variable_of(name)
         text = os.environ.get(variable, "")
         if not text:
             continue

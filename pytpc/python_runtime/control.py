@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 from typing import TYPE_CHECKING, Any
 
-from pytpc.python_runtime.config import NAMES, Config, parsed
+from pytpc.python_runtime.config import NAMES, PARAMETERS, Config, parsed, variable_of
 from pytpc.python_runtime.errors import warn
 
 if TYPE_CHECKING:
@@ -27,6 +27,7 @@ class Control:
         self._runtime = runtime
         self._ros = ros
         self._of_environment = runtime.config
+        self._told: list[str] = []
 
     def begin(self) -> None:
         """Apply the parameters once, and serve ``~tpc/reload``.
@@ -45,7 +46,7 @@ class Control:
         self._ros.Service(_SERVICE, service, reload)
 
     def take_over(self) -> list[str]:
-        """Apply the parameters, and warn of invalid ones; return the warnings."""
+        """Apply the parameters, and warn of those newly invalid; return all warnings."""
         complaints: list[str] = []
         now = self._runtime.config
         new = self._of_environment
@@ -65,8 +66,11 @@ class Control:
                     complaints.append(f"the parameter {folder}/{name} is ignored: {complaint}")
         if not self._runtime.apply(new):
             complaints.append("the settings cannot be applied; the previous ones stay")
+        # Who calls the service again and again does not fill the node's output.
         for complaint in complaints:
-            warn(complaint)
+            if complaint not in self._told:
+                warn(complaint)
+        self._told = complaints
         return complaints
 
 
@@ -74,6 +78,8 @@ def _changed(new: Config, now: Config, name: str, value: object) -> tuple[Config
     """``new`` with one more setting; with ``now``'s, and the reason, where the value is invalid."""
     if name not in NAMES:
         return new, "there is no such setting"
+    if name not in PARAMETERS:
+        return new, f"only the environment of the node sets it ({variable_of(name)})"
     text = _text(name, value)
     change, why = (None, "it is of the wrong type") if text is None else parsed(name, text)
     if change is not None:

@@ -52,6 +52,12 @@ if TYPE_CHECKING:
 _INTEGERS = struct.Struct("<Iqqq")
 
 
+def _both_clocks() -> tuple[int, int, int]:
+    """How long the reading took, and the steady and the real time in its middle."""
+    before, real, after = monotonic_ns(), time_ns(), monotonic_ns()
+    return after - before, before + (after - before) // 2, real
+
+
 class _Chunk:
     """Records of one thread. ``claim()`` gives the place of one, which may be behind ``end``."""
 
@@ -145,7 +151,7 @@ class LogFile(MappedFile):
         super().__init__(config, parent, node)
         self._each_second = each_second
         self._local = threading.local()
-        self._threads = 0
+        self._numbers = count(1).__next__
         self._free: list[_ThreadPlace] = []
         self._system: _SystemChunk | None = None
         self._live: tuple[tuple[Extent, int], int] | None = None
@@ -212,7 +218,7 @@ class LogFile(MappedFile):
                 # A signal handler reports while the chunk changes.
                 self._nested += 1
                 return None
-            if not self._next_chunk(place):
+            if not self._next_chunk(place, chunk):
                 return None
 
     def _simulated(
@@ -250,9 +256,7 @@ class LogFile(MappedFile):
         try:
             place = self._free.pop()
         except IndexError:
-            with self._lock:
-                self._threads += 1
-                place = _ThreadPlace(self._threads)
+            place = _ThreadPlace(self._numbers())
         self._local.owner = _Owner(place, self._free)
         self._local.place = place
         return place
@@ -267,9 +271,12 @@ class LogFile(MappedFile):
         """The number of the calling thread in this file, from 1."""
         return self._place().number
 
-    def _next_chunk(self, place: _ThreadPlace) -> bool:
+    def _next_chunk(self, place: _ThreadPlace, full: _Chunk) -> bool:
         place.is_changing = True
         try:
+            if place.chunk is not full:
+                # A signal handler has changed it just before.
+                return True
             written = place.written + (RECORDS_OF_CHUNK if place.chunk.end else 0)
             found = self.new_chunk(THREAD_CHUNK, place.number, written)
             chunk = _NoChunk() if found is None else _Chunk(*found)
@@ -352,15 +359,25 @@ class LogFile(MappedFile):
             self._look_at = 0 if self.is_simulated else self._sync_at
             if known.node and not self._is_node_known:
                 self._set_node(known.node)
-            before, real, after = monotonic_ns(), time_ns(), monotonic_ns()
-            nested, self._nested = self._nested, 0
-            if nested:
-                self.write_dropped(0, nested, 0, "nested")
-            self._integers(SYNC, 0, before + (after - before) // 2, real, known.ros_ns)
+            self._write_nested()
+            # Of four readings the one that was interrupted least.
+            _, steady, real = min(_both_clocks() for _ in range(4))
+            self._integers(SYNC, 0, steady, real, known.ros_ns)
+
+    def _write_nested(self) -> None:
+        nested, self._nested = self._nested, 0
+        if nested:
+            self.write_dropped(0, nested, 0, "nested")
+
+    def close(self) -> None:
+        """Write what is left, and give back unused space."""
+        self._write_nested()
+        super().close()
 
     def write_policy(self, config: Config) -> None:
         """Record that this policy applies from now on."""
-        self._integers(POLICY, config.policy == "edges", monotonic_ns(), config.period_ns, 0)
+        code = ("every", "edges", "light").index(config.policy)
+        self._integers(POLICY, code, monotonic_ns(), config.period_ns, 0)
 
     def write_dropped(self, one: int, number: int, flops: int, why: str) -> None:
         """Record that reports of a comparison (0: unknown) were dropped."""

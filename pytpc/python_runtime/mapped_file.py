@@ -9,6 +9,7 @@ import os
 import struct
 import sys
 import threading
+from operator import length_hint
 from time import monotonic_ns, time_ns
 from typing import TYPE_CHECKING
 
@@ -39,15 +40,16 @@ _LARGEST_EXTENT = 64 << 20
 
 
 class Extent:
-    """A mapped part of the file, as bytes and as words of 32 bits."""
+    """A mapped part of the file, as bytes and as words of 32 bits; ``free`` gives its chunks."""
 
-    __slots__ = ("base", "bytes", "chunks", "words")
+    __slots__ = ("bytes", "free", "words")
 
     def __init__(self, mapped: mmap.mmap, size: int) -> None:
         """``mapped`` has ``size`` bytes."""
         self.bytes = mapped
         self.words = memoryview(mapped).cast("I")
-        self.chunks = size // CHUNK_BYTES
+        # One call into C takes a chunk: a signal handler cannot take the same one.
+        self.free = iter(range(0, size, CHUNK_BYTES))
 
 
 class MappedFile:
@@ -67,7 +69,7 @@ class MappedFile:
         self._lock = threading.RLock()
         self._extents: list[Extent] = []
         self._size = HEADER_BYTES
-        self._used = 0
+        self._is_growing = False
         self.is_stopped = False
         self._is_closed = False
         self.path, self._descriptor = _created(config, node)
@@ -87,24 +89,33 @@ class MappedFile:
         with self._lock:
             if self.is_stopped or self._is_closed:
                 return None
-            before = sum(extent.chunks for extent in self._extents)
-            if self._used == before:
+            while True:
+                extent = self._extents[-1]
+                begin = next(extent.free, None)
+                if begin is not None:
+                    break
+                if self._is_growing:
+                    # A signal handler reports while the file grows.
+                    return None
                 try:
-                    self._grow()
+                    self._grow(extent)
                 except OSError as error:
                     self._stop(error.strerror or str(error))
                     return None
-                before = sum(extent.chunks for extent in self._extents[:-1])
-            else:
-                before -= self._extents[-1].chunks
-            extent = self._extents[-1]
-            begin = (self._used - before) * CHUNK_BYTES
-            self._used += 1
             CHUNK.pack_into(extent.bytes, begin + 4, thread, first, _thread.get_native_id())
             extent.words[begin >> 2] = kind
             return extent, begin
 
-    def _grow(self) -> None:
+    def _grow(self, full: Extent) -> None:
+        self._is_growing = True
+        try:
+            # A signal handler may have done it just before.
+            if self._extents[-1] is full:
+                self._add_extent()
+        finally:
+            self._is_growing = False
+
+    def _add_extent(self) -> None:
         if not self._is_mine():
             raise OSError(0, "the program has closed its descriptor")
         size = min(_LARGEST_EXTENT, max(_EXTENT_BYTES, self._size - HEADER_BYTES))
@@ -145,7 +156,8 @@ class MappedFile:
             self._is_closed = True
             if self._is_mine():
                 with contextlib.suppress(OSError):
-                    os.ftruncate(self._descriptor, HEADER_BYTES + self._used * CHUNK_BYTES)
+                    free = length_hint(self._extents[-1].free) * CHUNK_BYTES
+                    os.ftruncate(self._descriptor, self._size - free)
                 os.close(self._descriptor)
             if not self.is_stopped:
                 self._put_state(CLOSED)
@@ -181,7 +193,7 @@ class MappedFile:
             bounded(_program(), 1024),
         )
         self._header[:8] = MAGIC
-        self._grow()
+        self._add_extent()
 
 
 def bounded(text: str, size: int) -> bytes:

@@ -63,6 +63,14 @@ class Caps:
             self.dropped_in_all += 1
             return True
 
+    def count_over(self, one: Reported) -> None:
+        """Count a flop that is not reported, as if it exceeded the cap of its comparison."""
+        with self._lock:
+            over = self._over.setdefault(one, [0, 0, 0, 0])
+            over[0] += 1
+            over[1] += 1
+            self.dropped_in_all += 1
+
     def account(self) -> None:
         """Report what was dropped since the last call."""
         with self._lock:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pytpc.python_runtime import ros_state
 from pytpc.python_runtime.errors import many, warn
+from pytpc.python_runtime.light import LightSummary, short_line
 from pytpc.python_runtime.sinks import (
     PeriodSummary,
     Sink,
@@ -40,6 +41,7 @@ class RosoutSink(Sink):
     """
 
     def __init__(self) -> None:
+        super().__init__()
         self._publisher: Any = None
         self._message: Any = None
         self._inside = threading.local()
@@ -127,8 +129,11 @@ class TopicSink(Sink):
 
     # Subscribers come and go.
     is_polled = True
+    topic = TOPIC
+    is_asked_for = True
 
     def __init__(self) -> None:
+        super().__init__()
         self._waiting: deque[_Waiting] = deque()
         self._lock = threading.RLock()
         self._publisher: Any = None
@@ -147,7 +152,15 @@ class TopicSink(Sink):
 
     def summary(self, summary: PeriodSummary) -> None:
         """Keep it until the next batch."""
+        if isinstance(summary, LightSummary):
+            self._short(summary)
+            return
         line = f"threshold_summary:{summary_line(summary)}"
+        self._keep(_Waiting(summary.end_ros_ns, None, None, line))
+
+    def _short(self, summary: LightSummary) -> None:
+        begin, end = seconds(summary.begin_ros_ns, 7), seconds(summary.end_ros_ns, 7)
+        line = f"{begin};{end}\n{short_line(summary)}"
         self._keep(_Waiting(summary.end_ros_ns, None, None, line))
 
     def dropped(self, one: Reported, count: int, flops: int, why: str) -> None:
@@ -186,14 +199,24 @@ class TopicSink(Sink):
         self._send(at_once=False)
 
     def _advertise(self, ros: Any) -> None:  # noqa: ANN401
+        self._expected = _subscribers(ros, self.topic)
+        self._gather_until = monotonic_ns() + _GATHER_NS
+        self._publisher = self._publisher_of(ros)
+        # In this hook of the node's shutdown its topics are still open; later they are not.
+        ros.on_shutdown(self._send_last)
+
+    def _send_last(self) -> None:
+        self.flush()
+        self._send(at_once=True)
+
+    def _publisher_of(self, ros: Any) -> Any:  # noqa: ANN401
         from std_msgs.msg import String  # noqa: PLC0415
 
         self._message = String
-        self._expected = _subscribers(ros)
-        self._gather_until = monotonic_ns() + _GATHER_NS
-        self._publisher = ros.Publisher(TOPIC, String, queue_size=_QUEUE_MESSAGES)
-        # In this hook of the node's shutdown its topics are still open; later they are not.
-        ros.on_shutdown(lambda: self._send(at_once=True))
+        return ros.Publisher(TOPIC, String, queue_size=_QUEUE_MESSAGES)
+
+    def _publish(self, text: str) -> None:
+        self._publisher.publish(self._message(data=text))
 
     def _send(self, *, at_once: bool) -> None:
         connected = self._publisher.get_num_connections()
@@ -218,7 +241,7 @@ class TopicSink(Sink):
                 f",steady:{seconds(monotonic_ns(), 9)}"
             )
             self._sent += reports
-            self._publisher.publish(self._message(data=head + text))
+            self._publish(head + text)
 
     def status(self) -> str:
         """How many were sent, and whether there are subscribers."""
@@ -233,11 +256,33 @@ class TopicSink(Sink):
         with self._lock:
             unsent = sum(1 for waiting in self._waiting if waiting.report is not None)
             self._waiting.clear()
-        if unsent:
+        if unsent and self.is_asked_for:
             warn(
                 f"{many(unsent, 'evaluation')} were not sent on {TOPIC}: nobody listened, or the"
                 " node was shut down"
             )
+
+
+class AutoSink(TopicSink):
+    """The default: the same batches as log messages on /rosout."""
+
+    topic = "/rosout"
+    is_asked_for = False
+    poll_s = 0.1
+
+    def _publisher_of(self, ros: Any) -> Any:  # noqa: ANN401
+        from rosgraph_msgs.msg import Log  # noqa: PLC0415
+
+        self._message = Log
+        self._ros = ros
+        # The same arguments as rospy's own publisher, so that they share connections.
+        return ros.Publisher(self.topic, Log, latch=True, queue_size=_ROSOUT_MESSAGES)
+
+    def _publish(self, text: str) -> None:
+        ros, kind = self._ros, self._message
+        message = kind(level=kind.INFO, name=ros.get_name(), msg=f"threshold_batch:{text}")
+        message.header.stamp = ros.Time.now()
+        self._publisher.publish(message)
 
 
 def _messages(batch: deque[_Waiting]) -> list[tuple[int, str]]:
@@ -245,24 +290,30 @@ def _messages(batch: deque[_Waiting]) -> list[tuple[int, str]]:
     messages: list[tuple[int, str]] = []
     lines: list[str] = []
     count = size = 0
+    span = ""
     for waiting in batch:
         line = waiting.line
         if waiting.one is not None and waiting.report is not None:
             line = report_line(waiting.one, *waiting.report)
-        lines.append(f"\n{seconds(waiting.at_ns, 7)},{line}")
-        count += not line.startswith("threshold_dropped:")
+        mine, _, short = line.partition("\n")
+        if short:
+            lines.append(f"\n~{short}" if mine == span else f"\n@{mine}\n~{short}")
+            span = mine
+        else:
+            lines.append(f"\n{seconds(waiting.at_ns, 7)},{line}")
+        count += waiting.one is not None
         size += len(lines[-1])
         if size >= _MESSAGE_BYTES:
             messages.append((count, "".join(lines)))
-            lines, count, size = [], 0, 0
+            lines, count, size, span = [], 0, 0, ""
     return [*messages, (count, "".join(lines))] if lines else messages
 
 
-def _subscribers(ros: Any) -> int:  # noqa: ANN401
+def _subscribers(ros: Any, wanted: str) -> int:  # noqa: ANN401
     """The number of the topic's subscribers that the master knows."""
     try:
         _, _, state = ros.get_master().getSystemState()
-        return sum(len(nodes) for topic, nodes in state[1] if topic == TOPIC)
+        return sum(len(nodes) for topic, nodes in state[1] if topic == wanted)
     except Exception:
         # The master does not answer: wait for nobody.
         return 0

@@ -19,16 +19,16 @@ from pytpc.python_runtime import ros_state, sites
 from pytpc.python_runtime.config import Config, of_environment
 from pytpc.python_runtime.control import Control
 from pytpc.python_runtime.errors import warn
+from pytpc.python_runtime.light import Light
 from pytpc.python_runtime.log_file import LogFile
 from pytpc.python_runtime.policies import Caps, Edges
-from pytpc.python_runtime.ros_sinks import RosoutSink, TopicSink
+from pytpc.python_runtime.ros_sinks import AutoSink, RosoutSink, TopicSink
 from pytpc.python_runtime.sinks import FileSink, Sink
 from pytpc.python_runtime.sites import Reported
 
 if TYPE_CHECKING:
     from pytpc.python_runtime.find import ListedPlace
 
-_POLL_S = 0.02
 _LATE_S = 0.25
 
 
@@ -47,7 +47,7 @@ class Runtime:
         self._is_served = False
         self._sink = Sink()
         self._caps = Caps(Config(), self._sink)
-        self._edges: Edges | None = None
+        self._edges: Edges | Light | None = None
         self.file: LogFile | None = None
         sites.set_take(self._first)
         # Handlers run in the reverse order of their registration: this one is among the last.
@@ -122,6 +122,7 @@ class Runtime:
 
     def _choose(self, config: Config) -> bool:
         """Build sink and policy of ``config``; False if its file cannot be made."""
+        config = config.filled_in()
         self._flush()
         sink = self._sink_of(config)
         if sink is None:
@@ -131,9 +132,12 @@ class Runtime:
             former.end()
         self._caps = Caps(config, sink)
         is_on = config.sink != "off"
-        self._edges = (
-            Edges(config, sink, self._caps) if config.policy == "edges" and is_on else None
-        )
+        self._edges = None
+        if config.policy == "edges" and is_on:
+            self._edges = Edges(config, sink, self._caps)
+        elif config.policy == "light" and is_on:
+            self._edges = Light(config, sink, self._caps)
+        sink.flush = self._flush
         if self._edges is not None:
             for one in self.all_reported():
                 one.last = -1
@@ -154,19 +158,18 @@ class Runtime:
         if config.sink == "off":
             return Sink()
         if self._was_node:
-            topic = "/rosout" if config.sink == "rosout" else "/threshold_information"
+            topic = "/rosout" if config.sink != "topic" else "/threshold_information"
             warn(
                 f"process {os.getpid()} was forked from a node: its reports do not reach {topic};"
                 " the sink file records them"
             )
             return Sink()
-        kind = RosoutSink if config.sink == "rosout" else TopicSink
-        return self._sink if isinstance(self._sink, kind) else kind()
+        kinds = {"auto": AutoSink, "rosout": RosoutSink, "topic": TopicSink}
+        kind = kinds[config.sink]
+        return self._sink if type(self._sink) is kind else kind()
 
     def _file_sink(self, config: Config) -> Sink | None:
-        held = self.config
-        same = (held.folder, held.file_limit) == (config.folder, config.file_limit)
-        if self.file is None or self.file.is_stopped or not same:
+        if self.file is None or self.file.is_stopped:
             try:
                 new = LogFile(config, self._parent, self._look)
             except OSError as error:
@@ -216,21 +219,22 @@ class Runtime:
                     if not ros.is_shutdown():
                         warn(f"the settings of {ros.get_name()} cannot be read yet: {error}")
             sink, edges = self._sink, self._edges
-            is_busy = sink.is_polled or (edges is not None and self.file is None)
+            has_periods = edges is not None and (self.file is None or isinstance(edges, Light))
+            is_busy = sink.is_polled or has_periods
             if self._is_served and not is_busy:
                 break
-            if edges is not None and self.file is None:
+            if edges is not None and has_periods:
                 edges.flush(all_of_them=False)
             sink.poll()
-            time.sleep(_POLL_S if is_busy or ros is not None else _LATE_S)
+            time.sleep(sink.poll_s if is_busy or ros is not None else _LATE_S)
         self._has_helper = False
 
     def status(self) -> str:
         """The settings in effect as ``name=value`` words, as C++ nodes answer."""
         with self._lock:
-            config = self.config
+            config = self.config.filled_in()
             words = [f"sink={config.sink}", f"policy={config.policy}"]
-            if config.policy == "edges":
+            if config.policy != "every":
                 words.append(f"period={config.period_ns / 1e9:.6f}")
             if config.site_cap:
                 words.append(f"site_cap={config.site_cap}")

@@ -13,11 +13,13 @@ from typing import TYPE_CHECKING, Any
 from pytpc.python_runtime.log_layout import OUTCOME_BIT, RESULT_BIT, SUMMARY
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from pytpc.python_runtime.log_file import LogFile
     from pytpc.python_runtime.sites import Reported
 
-# A summary without its first word, up to its two spare words.
-_SUMMARY = struct.Struct("<IqddqIIQQQddddddQqq16x")
+# A summary without its first word, up to its last.
+_SUMMARY = struct.Struct("<IqddqIIQQQddddddQqqQ8x")
 _COUNT_AT, _BEGUN_AT = 48, 160
 
 # |cmp - thresh| above which an evaluation is far (docs/reference/scores.md#score-of-type-ii).
@@ -59,6 +61,11 @@ class PeriodSummary:
         self.slot = slot
         self.begin(0, 0, 0)
 
+    @property
+    def seen(self) -> int:
+        """Under ``light``: how many of the evaluations were inspected."""
+        return 0
+
     def begin(self, period: int, now_ns: int, ros_ns: int) -> None:
         """A new period, in which nothing was evaluated yet."""
         self.period = period
@@ -89,11 +96,20 @@ class PeriodSummary:
         self.high = max(self.high, cmp, thresh)
 
 
+def _nothing() -> None:
+    """Flush nothing."""
+
+
 class Sink:
     """A destination of reports. This one drops them; subclasses replace what they need."""
 
     # Whether the helper thread calls `poll`.
     is_polled = False
+    poll_s = 0.02
+
+    def __init__(self) -> None:
+        """``flush`` makes the policy hand over what it keeps."""
+        self.flush: Callable[[], None] = _nothing
 
     def take(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
         """One evaluation."""
@@ -182,6 +198,7 @@ def _packed(kept: PeriodSummary, *, is_open: bool = False) -> bytes:
         kept.flops,
         kept.begin_ros_ns,
         0 if is_open else kept.end_ros_ns,
+        kept.seen,
     )
 
 
@@ -194,6 +211,7 @@ class FileSink(Sink):
     """Writes all but the reports of ``every``, which `LogFile.take` writes."""
 
     def __init__(self, file: LogFile) -> None:
+        super().__init__()
         self.file = file
         self.take = file.take  # type: ignore[method-assign,assignment]
         self.edge = file.edge  # type: ignore[method-assign]

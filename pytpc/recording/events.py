@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pytpc.base import columns as tables
-from pytpc.base.columns import Bools, Floats, Int32s, Int64s, frozen
+from pytpc.base.columns import Bools, Floats, Int32s, Int64s, KeyIndex, frozen, order_of
 
 __all__ = ["Bools", "Events", "Floats", "Int32s", "Int64s", "KeyIndex", "Report"]
 
@@ -23,22 +23,6 @@ class Report(NamedTuple):
     cmp: float
     thresh: float
     res: bool
-
-
-@dataclass(frozen=True)
-class KeyIndex:
-    """The rows of every key together.
-
-    ``order`` int64[n] lists rows by key, then by place in the table; the rows of key code ``k``
-    are ``order[offsets[k]:offsets[k + 1]]``.
-    """
-
-    order: Int64s
-    offsets: Int64s
-
-    def rows(self, code: int) -> Int64s:
-        """The rows of one key, in the order of time."""
-        return self.order[self.offsets[code] : self.offsets[code + 1]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,27 +48,13 @@ class Events(tables.WordTable):
     what = "events"
 
     @cached_property
-    def by_key(self) -> KeyIndex:
-        """The rows of every key; worked out once."""
-        order = np.argsort(self.key, kind="stable").astype(np.int64)
-        counts = np.bincount(self.key, minlength=len(self.keys))
-        offsets = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
-        return KeyIndex(frozen(order), frozen(offsets))
-
-    def rows_of(self, key: str) -> Int64s:
-        """The rows of a key, in the order of time; none where the table does not know it."""
-        if key not in self.keys:
-            return np.empty(0, dtype=np.int64)
-        return self.by_key.rows(self.keys.index(key))
-
-    @cached_property
     def previous(self) -> Int64s:
         """int64[n]: for each row the row of the same key's evaluation before it, -1 where none.
 
         Before means in the same node: where two processes run the same code, an evaluation in one
         says nothing about the other.
         """
-        order = np.lexsort((self.node, self.key))
+        order = order_of(self.key.astype(np.int64) * max(1, len(self.nodes)) + self.node)
         before = np.full(len(self), -1, dtype=np.int64)
         same = (self.key[order[1:]] == self.key[order[:-1]]) & (
             self.node[order[1:]] == self.node[order[:-1]]
@@ -106,6 +76,16 @@ class Events(tables.WordTable):
 
     def with_keys(self, keys: Sequence[str]) -> Events:
         """The same table with ``keys`` as its keys; evaluations of other keys are left out."""
+        known = self.__dict__.get("_with_keys")
+        if known is not None and known[0] == tuple(keys):
+            found: Events = known[1]
+            return found
+        found = self._with_keys_of(keys)
+        # Every question to a recording asks for the keys of the same static information.
+        self.__dict__["_with_keys"] = tuple(keys), found
+        return found
+
+    def _with_keys_of(self, keys: Sequence[str]) -> Events:
         codes = tables.recode(self.key, self.keys, keys)
         kept = codes >= 0
         columns = {name: column[kept] for name, column in self.columns().items()}

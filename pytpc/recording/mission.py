@@ -56,6 +56,18 @@ class Dropped:
         return (self.node, self.key, self.why)
 
 
+@dataclass(frozen=True, slots=True, order=True)
+class ReadName:
+    """The full name of the parameter that a node has read: ``/node/arm/limit``.
+
+    ``key`` is that of the read in the static information.
+    """
+
+    key: str
+    node: str
+    name: str
+
+
 @dataclass(frozen=True)
 class Recording:
     """One mission.
@@ -65,7 +77,8 @@ class Recording:
     ``malformed`` counts the records that were skipped, ``malformed_first`` has the first 20.
     ``lost`` has for each node how many of its log messages never reached the recorder.
     ``start_ns`` and ``end_ns`` are on the clock of the events. ``notes`` are sentences for the user
-    about what was read and what was left out. ``dropped`` is what the processes themselves counted.
+    about what was read and what was left out. ``dropped`` is what the processes themselves counted,
+    and ``names`` the full names of parameters that they reported, sorted.
     """
 
     name: str
@@ -79,6 +92,7 @@ class Recording:
     notes: tuple[str, ...] = ()
     summaries: Summaries = field(default_factory=Summaries.empty)
     dropped: tuple[Dropped, ...] = ()
+    names: tuple[ReadName, ...] = ()
 
     @property
     def seconds(self) -> float:
@@ -116,6 +130,7 @@ def write_marks_json(recording: Recording, folder: Path, events: int, summaries:
         "malformed_first": [asdict(record) for record in recording.malformed_first],
         "lost": recording.lost,
         "dropped": [asdict(dropped) for dropped in recording.dropped],
+        "names": [asdict(name) for name in recording.names],
         "notes": list(recording.notes),
     }
     text = json.dumps(document, indent=1, sort_keys=True, ensure_ascii=False)
@@ -186,6 +201,7 @@ def _recording(document: object) -> tuple[Recording, int, int]:
         lost={str(node): int(count) for node, count in document["lost"].items()},
         notes=tuple(str(note) for note in document["notes"]),
         dropped=tuple(Dropped(**item) for item in document.get("dropped", [])),
+        names=tuple(ReadName(**item) for item in document.get("names", [])),
     )
     # Files of older versions say nothing of summaries.
     return recording, int(document["events"]), int(document.get("summaries", 0))

@@ -30,8 +30,7 @@ class KnownChange:
 
 
 def read_known_change(mission: Path) -> KnownChange:
-    """What was done according to the folder of ``mission``, or ``mission`` itself; empty if
-    nothing.
+    """The change that the folder of ``mission``, or ``mission`` itself, tells of; may be empty.
 
     Raises:
         InputError: the file is no JSON, or one of the two fields is missing or wrong.

@@ -49,8 +49,9 @@ class Transform:
 
 @dataclass(frozen=True, slots=True)
 class ParameterRead:
-    """A call that reads a parameter; ``<dynamic>`` in ``name`` stands for a part that is not
-    constant.
+    """A call that reads a parameter; ``<dynamic>`` in ``name`` stands for an unknown part.
+
+    Under its ``key``, a running node reports the full name; None if it does not.
     """
 
     name: str
@@ -61,6 +62,7 @@ class ParameterRead:
     lineno: int
     column: int
     function: str
+    key: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -286,7 +288,7 @@ def _comparison(data: dict[str, Any]) -> Comparison:
 
 # Fields that only one half of TPC writes, or only one kind of transform has.
 _OPTIONAL = frozenset(
-    {"analysis", "end_lineno", "end_column", "operand", "script", "build_folder"}
+    {"analysis", "end_lineno", "end_column", "key", "operand", "script", "build_folder"}
     | {"scale", "offset", "tree"}
 )
 

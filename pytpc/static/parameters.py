@@ -14,15 +14,30 @@ def same_parameter(given: str, source: str) -> bool:
     """Whether the name ``given`` by a person means the parameter ``source`` of the program.
 
     The namespace of the node may be left out: ``limit``, ``~limit`` and ``/node/limit`` all mean
-    ``~limit``. A part that the analysis does not know matches anything; a name that is wholly
-    unknown matches only itself.
+    ``~limit``, and ``limit`` means ``/node/arm/limit``. A part that the analysis does not know
+    matches anything; a name that is wholly unknown matches only itself.
     """
     known = _relative(source.removeprefix(f"{DYNAMIC}/"))
     if given == source or DYNAMIC in (known, given):
         return given == source
+    if source.startswith("/") and not given.startswith("/") and DYNAMIC not in source:
+        return f"/{known}".endswith(f"/{_relative(given)}")
     pattern = ".+".join(re.escape(part) for part in known.split(DYNAMIC))
     before = "(?:.*/)?" if given.startswith("/") and not source.startswith("/") else ""
     return re.fullmatch(before + pattern, _relative(given)) is not None
+
+
+def resolved(source: str, node: str) -> str:
+    """The full name of a parameter that a node calls ``source``.
+
+    >>> resolved("~limit", "/ns/mission"), resolved("limit", "/ns/mission"), resolved("/a", "/m")
+    ('/ns/mission/limit', '/ns/limit', '/a')
+    """
+    if source.startswith("/"):
+        return source
+    if source.startswith("~"):
+        return f"{node}/{source.lstrip('~/')}"
+    return f"{node.rpartition('/')[0]}/{source}"
 
 
 def parameter_name(comparison: Comparison) -> str:

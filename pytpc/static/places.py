@@ -83,15 +83,18 @@ def merge_places(
         packages.setdefault(unit.source_root.rstrip("/"), set()).add(unit.package)
     found: dict[Identity, list[KeyIn]] = {}
     for unit in units:
+        names = {each.file for each in unit.comparisons}
+        files = {name: unit.absolute(name) for name in names}
         for each in unit.comparisons:
             key = KeyIn(each.key, unit.package, unit.link_unit, each.distance)
-            found.setdefault(_identity(unit, each, copies or {}), []).append(key)
-    tpcs = [_tpc(identity, keys, packages) for identity, keys in found.items()]
+            identity = _identity(files[each.file], each, copies or {})
+            found.setdefault(identity, []).append(key)
+    roots = {file: _root_of(file, packages) for file in {identity[0] for identity in found}}
+    tpcs = [_tpc(identity, keys, packages, roots) for identity, keys in found.items()]
     return tuple(sorted(tpcs, key=_order))
 
 
-def _identity(unit: LinkUnit, found: Comparison, copies: Mapping[str, str]) -> Identity:
-    file = unit.absolute(found.file)
+def _identity(file: str, found: Comparison, copies: Mapping[str, str]) -> Identity:
     threshold = found.source if found.source is not None else found.name or ""
     return (
         copies.get(file, file),
@@ -105,10 +108,20 @@ def _identity(unit: LinkUnit, found: Comparison, copies: Mapping[str, str]) -> I
     )
 
 
-def _tpc(identity: Identity, keys: list[KeyIn], packages: Mapping[str, set[str]]) -> Tpc:
+def _root_of(file: str, packages: Mapping[str, set[str]]) -> str | None:
+    """The folder of ``packages`` that holds a file, the innermost one."""
+    return next((str(up) for up in PurePosixPath(file).parents if str(up) in packages), None)
+
+
+def _tpc(
+    identity: Identity,
+    keys: list[KeyIn],
+    packages: Mapping[str, set[str]],
+    roots: Mapping[str, str | None],
+) -> Tpc:
     file, lineno, column, threshold, kind, relation, constant = identity
     keys = sorted(keys, key=lambda each: (each.distance, each.package, each.link_unit, each.key))
-    root = next((str(up) for up in PurePosixPath(file).parents if str(up) in packages), None)
+    root = roots[file]
     owners = packages[root] if root is not None else set()
     return Tpc(
         file=file,
@@ -121,7 +134,7 @@ def _tpc(identity: Identity, keys: list[KeyIn], packages: Mapping[str, set[str]]
         distance=keys[0].distance,
         # Under catkin_make all packages have one source root; then the nearest unit's is meant.
         package=next(iter(owners)) if len(owners) == 1 else keys[0].package,
-        place=file if root is None else str(PurePosixPath(file).relative_to(root)),
+        place=file if root is None else file[len(root) :].lstrip("/"),
         keys=tuple(keys),
     )
 

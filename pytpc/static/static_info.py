@@ -26,6 +26,7 @@ from pytpc.base.checked_json import (
     dump_json,
     parse_json,
 )
+from pytpc.base.collector import without_collector
 from pytpc.base.errors import InputError, WorkspaceError
 from pytpc.base.paths import MERGED_FILE, OWN_FOLDER
 from pytpc.static.link_unit import Comparison, LeftOut, LinkUnit
@@ -177,10 +178,11 @@ class StaticInfo:
             InputError: the file cannot be read, is not JSON (with the line), or breaks the schema
                 (with the JSON pointer).
         """
-        data = parse_json(path)
-        if isinstance(data, dict) and "link_unit" in data:
-            return cls.of([load_link_unit(path)], path)
-        return cls.from_json(_rooted(data, path.absolute().parent), path)
+        with without_collector():
+            data = parse_json(path)
+            if isinstance(data, dict) and "link_unit" in data:
+                return cls.of([load_link_unit(path)], path)
+            return cls.from_json(_rooted(data, path.absolute().parent), path)
 
 
 def _rooted(data: object, folder: Path) -> object:
@@ -206,7 +208,8 @@ def load_link_unit(path: Path) -> LinkUnit:
         InputError: the file cannot be read, is not JSON (with the line), or breaks the schema
             (with the JSON pointer).
     """
-    unit = LinkUnit.from_json(parse_json(path), path)
+    with without_collector():
+        unit = LinkUnit.from_json(parse_json(path), path)
     if path.parent.name != "tpc":
         return unit
     return replace(unit, build_folder=str(_build_folder(path.absolute().parent.parent)))

@@ -89,6 +89,7 @@ def read_tags(data: bytes) -> list[Tag]:
 
     parser.StartElementHandler = begin
     parser.EndElementHandler = end
+    # In the parser, an encoding that Python does not know would be a LookupError.
     encoding_of(data)
     try:
         parser.Parse(data, True)

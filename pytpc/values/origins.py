@@ -12,7 +12,7 @@ from typing import Any, Literal, cast, get_args
 from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError
-from pytpc.static.parameters import DYNAMIC, same_parameter
+from pytpc.static.parameters import DYNAMIC, resolved, same_parameter
 
 ORIGINS_FILE = "origins.json"
 START_FILE = "params_start.yaml"
@@ -193,19 +193,6 @@ def origin_for(
     if not chosen and DYNAMIC not in source:
         return _default(source, default)
     return None
-
-
-def resolved(source: str, node: str) -> str:
-    """The full name of a parameter that a node calls ``source``.
-
-    >>> resolved("~limit", "/ns/mission"), resolved("limit", "/ns/mission"), resolved("/a", "/m")
-    ('/ns/mission/limit', '/ns/limit', '/a')
-    """
-    if source.startswith("/"):
-        return source
-    if source.startswith("~"):
-        return f"{node}/{source.lstrip('~/')}"
-    return f"{node.rpartition('/')[0]}/{source}"
 
 
 def _default(name: str, default: object) -> Origin:

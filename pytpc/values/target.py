@@ -9,6 +9,7 @@ from pathlib import Path
 
 from pytpc.base.errors import InputError
 from pytpc.base.source_bytes import read_bytes
+from pytpc.base.wording import listed
 from pytpc.static.parameters import same_parameter
 from pytpc.values.apply import FileChange, decoded
 from pytpc.values.installed import is_installed, of_the_system, source_of
@@ -106,12 +107,14 @@ def chosen(target: Target, parameter: str) -> Origin:
         return target.origins[parameter]
     meant = [name for name in target.origins if same_parameter(name, parameter)]
     if len(meant) > 1:
-        raise InputError(f"several parameters end with {parameter}: {_listed(meant)}")
+        raise InputError(
+            f"several parameters end with {parameter}: {listed(sorted(meant), _LISTED)}"
+        )
     if meant:
         return target.origins[meant[0]]
     if parameter.startswith("/"):
         return Origin(parameter, "default", None, None, None, "")
-    names = _listed([node.name for node in target.nodes]) or "no node is known"
+    names = listed(sorted(node.name for node in target.nodes), _LISTED) or "no node is known"
     raise InputError(
         f"{parameter} is not set anywhere; to change a default, give the full name, as in"
         f" /NODE/{parameter.lstrip('~/')} ({names})"
@@ -140,7 +143,7 @@ def plan_yaml(path: Path, parameter: str, given: str, *, force: bool = False) ->
         ending = [keys for keys in known if "/".join(keys).endswith(f"/{wanted}")]
         meant = sorted(whole or ending)
         if len(meant) != 1:
-            names = _listed(["/".join(keys) for keys in meant])
+            names = listed(sorted("/".join(keys) for keys in meant), _LISTED)
             what = f"several values end with {parameter}: {names}" if meant else ""
             raise Refused(what or f"{parameter} is not in the file")
         edit = edit_yaml(text, meant[0], given, force=force)
@@ -307,8 +310,3 @@ def _where(path: Path, real: Path) -> tuple[str, ...]:
     if others > 0:
         notes.append(f"{others} other names (hard links) of this file keep the old text")
     return tuple(notes)
-
-
-def _listed(names: Sequence[str]) -> str:
-    shown = ", ".join(sorted(names)[:_LISTED])
-    return shown if len(names) <= _LISTED else f"{shown} and {len(names) - _LISTED} more"

@@ -54,9 +54,11 @@ private:
   bool reload(std_srvs::Trigger::Request &,
               std_srvs::Trigger::Response &Answer);
   Texts takeParameters();
+  void warnOfNew(const Texts &Complaints);
   void takeFrom(const char *Place, Config &New, const Config &Now,
                 Texts &Complaints);
 
+  Texts Told; ///< at the last time
   WakingQueue Queue;
   const Config OfEnvironment = current();
   std::atomic<bool> Served{false};
@@ -108,12 +110,6 @@ static void keep(Config &New, const Config &Now, const std::string &Name) {
     New.SiteCap = Now.SiteCap;
   else if (Name == "process_cap")
     New.ProcessCap = Now.ProcessCap;
-  else if (Name == "folder")
-    New.Folder = Now.Folder;
-  else if (Name == "file_limit")
-    New.FileLimitMiB = Now.FileLimitMiB;
-  else if (Name == "file_reserve")
-    New.FileReserveMiB = Now.FileReserveMiB;
 }
 
 void Control::takeFrom(const char *Place, Config &New, const Config &Now,
@@ -129,10 +125,18 @@ void Control::takeFrom(const char *Place, Config &New, const Config &Now,
   }
   for (auto &[Name, Value] : Found) {
     const std::string Parameter = Folder + "/" + Name;
-    if (std::find(std::begin(ConfigNames), std::end(ConfigNames), Name) ==
-        std::end(ConfigNames)) {
+    const auto *Known =
+        std::find(std::begin(ConfigNames), std::end(ConfigNames), Name);
+    if (Known == std::end(ConfigNames)) {
       Complaints.push_back("there is no setting " + Name + " (" + Parameter +
                            ")");
+      continue;
+    }
+    if (Known >= ConfigNames + ParameterNames) {
+      Complaints.push_back("the parameter " + Parameter +
+                           " is ignored: only the environment of the node "
+                           "sets it (" +
+                           variableOf(Name) + ")");
       continue;
     }
     std::string Text, Why = "it is of the wrong type";
@@ -162,13 +166,20 @@ Control::Texts Control::takeParameters() {
   return Complaints;
 }
 
+/// Who calls the service again and again does not fill the node's output.
+void Control::warnOfNew(const Texts &Complaints) {
+  for (const std::string &Complaint : Complaints)
+    if (std::find(Told.begin(), Told.end(), Complaint) == Told.end())
+      warn(Complaint);
+  Told = Complaints;
+}
+
 bool Control::reload(std_srvs::Trigger::Request &,
                      std_srvs::Trigger::Response &Answer) {
   const Texts Complaints = takeParameters();
-  for (const std::string &Complaint : Complaints) {
-    warn(Complaint);
+  warnOfNew(Complaints);
+  for (const std::string &Complaint : Complaints)
     Answer.message += Complaint + "; ";
-  }
   Answer.success = Complaints.empty();
   Answer.message += statusLine();
   return true;
@@ -187,8 +198,7 @@ void Control::begin() {
   }
   Failed = false;
   Retry = FirstRetry;
-  for (const std::string &Complaint : takeParameters())
-    warn(Complaint);
+  warnOfNew(takeParameters());
   ros::AdvertiseServiceOptions Options;
   Options.init<std_srvs::Trigger::Request, std_srvs::Trigger::Response>(
       ros::names::resolve(Service),

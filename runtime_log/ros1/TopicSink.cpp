@@ -1,5 +1,12 @@
 //===- TopicSink.cpp ------------------------------------------------------===//
 //
+// Three sinks: one sends batches as std_msgs/String on /threshold_information,
+// one batches as rosgraph_msgs/Log on /rosout, and one a rosgraph_msgs/Log for
+// each report, as the thesis has it. What goes to /rosout goes through the
+// publisher that roscpp has for it, not through roscpp's console: a thread that
+// is inside the console when a signal handler shuts the node down may never
+// come out.
+//
 // Reports wait as bytes in a store of blocks until the helper thread makes
 // messages of them. If a subscriber is too slow, roscpp queues messages and,
 // when the queue is full, drops the oldest. A reader notices this because each
@@ -21,6 +28,7 @@
 #include <ros/publication.h>
 #include <ros/this_node.h>
 #include <ros/topic_manager.h>
+#include <rosgraph_msgs/Log.h>
 #include <std_msgs/String.h>
 #include <xmlrpcpp/XmlRpcException.h>
 
@@ -34,7 +42,10 @@
 namespace tpc {
 namespace {
 
-constexpr const char *Topic = "/threshold_information";
+constexpr const char *Reports = "/threshold_information";
+constexpr const char *Rosout = "/rosout";
+/// Stands before the batch in a log message.
+constexpr const char *BatchPrefix = "threshold_batch:";
 constexpr size_t MessageBytes = size_t(64) * 1024;
 /// Messages that wait for a slow subscriber: 100 seconds at five a second, and
 /// at most 32 MiB.
@@ -69,11 +80,19 @@ private:
 
 class TopicSink : public Sink {
 public:
-  TopicSink();
+  enum class Form : uint8_t {
+    Strings, ///< batches on /threshold_information
+    Logs,    ///< batches on /rosout
+    OneByOne ///< a message on /rosout for each report
+  };
+
+  explicit TopicSink(Form F)
+      : F(F), Topic(F == Form::Strings ? Reports : Rosout) {}
 
   void take(const Report &R) override;
   void take(const Summary &S) override;
   void take(const Dropped &D) override;
+  void take(const ReadName &N) override;
   void poll() override;
   bool isPolled() const override;
   void end() override;
@@ -88,7 +107,10 @@ private:
   void advertise();
   bool sendWaiting(bool AtOnce);
   void send(ros::Publication &To, const TopicStore::Batch &Batch);
+  void sendOneByOne(ros::Publication &To, const TopicStore::Batch &Batch);
 
+  const Form F;
+  const char *const Topic;
   std::mutex StoreLock; ///< for the next two
   TopicStore Store;
   int64_t OldestAt = 0; ///< since when something is waiting
@@ -107,17 +129,35 @@ private:
   Doorbell Bell{Subscribed};
 };
 
-TopicSink &theSink() {
-  // Never destroyed: threads may report until the very end.
-  static TopicSink &Only = *new TopicSink;
-  return Only;
-}
+/// Never destroyed: threads may report until the very end.
+struct Sinks {
+  TopicSink OfForm[3]{TopicSink{TopicSink::Form::Strings},
+                      TopicSink{TopicSink::Form::Logs},
+                      TopicSink{TopicSink::Form::OneByOne}};
 
-TopicSink::TopicSink() {
-  pthread_atfork([] { theSink().beforeFork(); },
-                 [] { theSink().afterFork(false); },
-                 [] { theSink().afterFork(true); });
-}
+  Sinks() {
+    pthread_atfork(
+        [] {
+          for (TopicSink &S : all().OfForm)
+            S.beforeFork();
+        },
+        [] { all().afterFork(false); }, [] { all().afterFork(true); });
+  }
+
+  void afterFork(bool InChild) {
+    for (TopicSink &S : OfForm)
+      S.afterFork(InChild);
+  }
+
+  static TopicSink &of(TopicSink::Form F) {
+    return all().OfForm[static_cast<size_t>(F)];
+  }
+
+  static Sinks &all() {
+    static Sinks &Only = *new Sinks;
+    return Only;
+  }
+};
 
 void TopicSink::afterFork(bool InChild) {
   if (InChild) {
@@ -156,12 +196,17 @@ void TopicSink::take(const Report &R) {
 void TopicSink::take(const Summary &S) {
   if (forkedFromNode())
     return warnOfFork(Topic);
-  keep([&] { Store.add({S.EndRos, false}, S); });
+  keep([&] { Store.add({S.EndRos, false}, S, F != Form::OneByOne); });
 }
 
 void TopicSink::take(const Dropped &D) {
   if (!forkedFromNode())
     keep([&] { Store.add(D); });
+}
+
+void TopicSink::take(const ReadName &N) {
+  if (!forkedFromNode())
+    keep([&] { Store.add(N); });
 }
 
 bool TopicSink::isPolled() const {
@@ -192,11 +237,16 @@ void TopicSink::advertise() {
     return;
   }
   ros::AdvertiseOptions Options;
-  Options.init<std_msgs::String>(ros::names::resolve(Topic), QueueMessages);
+  const std::string Name = ros::names::resolve(Topic);
+  if (F != Form::Strings)
+    Options.init<rosgraph_msgs::Log>(Name, QueueMessages);
+  else
+    Options.init<std_msgs::String>(Name, QueueMessages);
   const auto Callbacks = boost::make_shared<ros::SubscriberCallbacks>(
       [](const ros::SingleSubscriberPublisher &) {},
       ros::SubscriberStatusCallback(), ros::VoidConstPtr(), &Bell);
   const ros::TopicManagerPtr &Topics = ros::TopicManager::instance();
+  // If roscpp publishes on the topic, its publisher gets one more user.
   if (Topics->advertise(Options, Callbacks)) {
     const uint32_t Known = subscribersOf(Options.topic);
     std::lock_guard<std::mutex> Guard(SendLock);
@@ -229,14 +279,34 @@ bool TopicSink::sendWaiting(bool AtOnce) {
   TopicStore::Batch Batch;
   {
     std::lock_guard<std::mutex> Guard(StoreLock);
-    if (!Something || (!AtOnce && Store.bytes() < MessageBytes &&
+    const bool MayWait = !AtOnce && F != Form::OneByOne;
+    if (!Something || (MayWait && Store.bytes() < MessageBytes &&
                        Clock::steady() - OldestAt < BatchNs))
       return false;
     Batch = Store.takeAll();
     Something = false;
   }
-  send(*To, Batch);
+  if (F == Form::OneByOne)
+    sendOneByOne(*To, Batch);
+  else
+    send(*To, Batch);
+  ros::PollManager::instance()->getPollSet().signal();
   return true;
+}
+
+ros::SerializedMessage logOf(int64_t Stamp, std::string Text) {
+  rosgraph_msgs::Log Message;
+  Message.header.stamp.fromNSec(static_cast<uint64_t>(Stamp));
+  Message.level = rosgraph_msgs::Log::INFO;
+  Message.name = ros::this_node::getName();
+  Message.msg = std::move(Text);
+  return ros::serialization::serializeMessage(Message);
+}
+
+ros::SerializedMessage stringOf(std::string Text) {
+  std_msgs::String Message;
+  Message.data = std::move(Text);
+  return ros::serialization::serializeMessage(Message);
 }
 
 void TopicSink::send(ros::Publication &To, const TopicStore::Batch &Batch) {
@@ -244,19 +314,29 @@ void TopicSink::send(ros::Publication &To, const TopicStore::Batch &Batch) {
   const std::string Dropped = ",dropped:" + std::to_string(Batch.DroppedInAll);
   for (const TopicStore::Lines &Part :
        linesOf(Batch, rosNow(), rosTimeIsSimulated(), MessageBytes)) {
-    std_msgs::String Message;
-    Message.data = "#seq:" + std::to_string(Sent) +
-                   ",count:" + std::to_string(Part.Reports) + Dropped +
-                   Process + ",steady:" + seconds(Clock::steady(), 9) +
-                   Part.Text;
+    std::string Text = "#seq:" + std::to_string(Sent) +
+                       ",count:" + std::to_string(Part.Reports) + Dropped +
+                       Process + ",steady:" + seconds(Clock::steady(), 9) +
+                       Part.Text;
     Sent += Part.Reports;
     // Not TopicManager::publish, which looks up the topic again and crashes if
     // the topic was removed in that moment.
-    ros::SerializedMessage Bytes =
-        ros::serialization::serializeMessage(Message);
+    ros::SerializedMessage Bytes = F == Form::Strings
+                                       ? stringOf(std::move(Text))
+                                       : logOf(rosNow(), BatchPrefix + Text);
     To.publish(Bytes);
   }
-  ros::PollManager::instance()->getPollSet().signal();
+}
+
+void TopicSink::sendOneByOne(ros::Publication &To,
+                             const TopicStore::Batch &Batch) {
+  forEachLine(Batch, rosNow(), rosTimeIsSimulated(),
+              [&](LineKind Kind, int64_t Ns, std::string_view Text) {
+                Sent += Kind == LineKind::Report;
+                ros::SerializedMessage Bytes =
+                    logOf(Ns, std::string(prefixOf(Kind)).append(Text));
+                To.publish(Bytes);
+              });
 }
 
 void TopicSink::poll() {
@@ -289,7 +369,9 @@ void TopicSink::end() {
     Unsent = Store.giveUp();
     Something = false;
   }
-  if (Unsent)
+  // In batches on /rosout it is the last second of each node, and everything in
+  // a program without ROS: nobody has asked for these.
+  if (Unsent && F != Form::Logs)
     warn(std::to_string(Unsent) + " evaluations were not sent on " + Topic +
          ": nobody listened, or the node was shut down");
 }
@@ -302,6 +384,8 @@ std::string TopicSink::status() const {
 
 } // namespace
 
-Sink &topicSink() { return theSink(); }
+Sink &topicSink() { return Sinks::of(TopicSink::Form::Strings); }
+Sink &autoSink() { return Sinks::of(TopicSink::Form::Logs); }
+Sink &rosoutSink() { return Sinks::of(TopicSink::Form::OneByOne); }
 
 } // namespace tpc

@@ -94,7 +94,10 @@ class Finding:
 
 @dataclass(frozen=True)
 class Compared:
-    """A place where a parameter decides: a comparison, or a flag's value (then `by` is None)."""
+    """A place where a parameter decides: a comparison, or a flag's value.
+
+    `predicate` is one that it decides, or the comparison itself: its outcome may be shown.
+    """
 
     parameter: str
     type: str
@@ -130,15 +133,20 @@ class Checker:
                 for d in self.memory.definitions(i):
                     self.sees[d].append(i)
         self.distance: dict[Instruction, int] = {}
+        self.shown: dict[Instruction, int] = {}
         self.slice()
 
     def findings(self) -> set[Finding]:
         nearest: dict[tuple[str, ...], int] = {}
-        for c in self.comparisons():
+        comparisons = self.comparisons()
+        deciding = {c.place for c in comparisons if c.predicate in self.distance}
+        for c in comparisons:
             place = c.place.place
-            if c.predicate in self.distance and place and self.is_user(place.file) and place.line:
+            distance = self.distance.get(c.predicate)
+            if c.predicate is c.place and c.place not in deciding:
+                distance = self.shown.get(c.place)
+            if distance is not None and place and self.is_user(place.file) and place.line:
                 what = (place, c.parameter, c.type, c.relation)
-                distance = self.distance[c.predicate]
                 nearest[what] = min(distance, nearest.get(what, distance))
         return {
             Finding(p.file, p.line, p.column, parameter, type_, relation, distance)
@@ -148,7 +156,11 @@ class Checker:
     # The slice, by rounds ---------------------------------------------------
 
     def slice(self) -> None:
-        """Breadth first from the exposing calls; `distance` of the predicates on the way."""
+        """Breadth first from the exposing calls.
+
+        `distance` of the predicates on the way; `shown`: of the comparisons whose outcome is a
+        value on it.
+        """
         exposing = [i for i in self.program.instructions if i.is_call and self.exposes(i)]
         this = [(i, "data") for i in exposing]
         entered, number_ = set(this), 1
@@ -158,6 +170,9 @@ class Checker:
                 for nearer in self.choosers_of(item):
                     self.distance.setdefault(nearer, number_)
                 following += self.step(item, why)
+            for item, why in following:
+                if why == "data" and item.opcode in ("icmp", "fcmp"):
+                    self.shown.setdefault(item, number_)
             this = [i for i in dict.fromkeys(following) if i not in entered]
             entered |= set(this)
             number_ += 1
@@ -403,7 +418,7 @@ class Checker:
         if is_flag:
             self.flag(name, by, self.decides(by, at.context), out)
             return
-        for predicate in self.decides(by, at.context):
+        for predicate in [by, *self.decides(by, at.context)]:
             out.add(Compared(name, at.how.type, relation, by, predicate))
 
     def computed(self, how: How, by: Instruction, value: Value) -> How | None:

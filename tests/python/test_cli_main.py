@@ -39,7 +39,13 @@ def test_help_names_every_command_and_says_all_of_it_in_80_columns() -> None:
 def test_what_takes_long_to_import_is_imported_by_those_that_need_it() -> None:
     """Drawing, Parquet and bags take a second together; help and lists do without."""
     slow = {"matplotlib", "pyarrow", "rosbags", "scipy"}
-    for module in ("main", "static_commands", "explain_commands", "machine_commands"):
+    for module in (
+        "main",
+        "list_commands",
+        "static_commands",
+        "explain_commands",
+        "machine_commands",
+    ):
         code = f"import sys, pytpc.cli.{module}; print(*sys.modules)"
         done = subprocess.run(
             [sys.executable, "-c", code], check=False, capture_output=True, text=True

@@ -180,6 +180,9 @@ def test_declarations_go_with_the_package(packages):
     assert declared_for(declared, suspect("~rate")) is None
     assert declared_for(declared, suspect("gain")).high == 3
     assert declared_for(declared, suspect("~speed")) is None
+    # The handle of a server puts its namespace before the name that the file has.
+    assert declared_for(declared, suspect("~planner/rate"), source).high == 20
+    assert declared_for(declared, suspect("~planner_rate"), source) is None
     # Another package's file says nothing of this one's parameter.
     (packages / "c" / "src").mkdir(parents=True)
     (packages / "c" / "package.xml").write_text("<package/>")

@@ -41,6 +41,7 @@ RECORDINGS: Mapping[str, Sequence[str]] = {
 }
 STATICS: Mapping[str, Sequence[str]] = {
     "blind-spots": (INPUT,),
+    "coverage": (INPUT,),
     "explain": (INPUT, "~limit"),
     "export": (INPUT, "--html", "out.html"),
     "list": (INPUT,),

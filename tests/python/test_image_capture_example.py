@@ -24,6 +24,7 @@ READ = re.compile(r'\b(?:param|getParam)\(\s*"(\w+)"')
 
 # Where the source compares something that is not named as the parameter is.
 OTHER_NAMES = {
+    "cruise_speed": "step",
     "field_of_view_deg": "half_angle_",
     "yaw_tolerance_deg": "yaw_tolerance_",
     "enable_yaw_ctrl": "enable_yaw_ctrl_|enabled\\(\\)",

@@ -64,7 +64,7 @@ def test_the_numbers(theirs, ours):
 def test_the_kinds_of_records_and_chunks():
     assert enumerators("Kind") == {
         f"{name.title()}Record": getattr(log_layout, name)
-        for name in ("REPORT", "SITE", "SYNC", "SIMULATED", "SUMMARY", "DROPPED", "POLICY")
+        for name in ("REPORT", "SITE", "SYNC", "SIMULATED", "SUMMARY", "DROPPED", "POLICY", "NAME")
     }
     chunks = [log_layout.THREAD_CHUNK, log_layout.SYSTEM_CHUNK, log_layout.LIVE_CHUNK]
     assert enumerators("ChunkKind") == dict(zip(("Reports", "System", "Live"), chunks, strict=True))

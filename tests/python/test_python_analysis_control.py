@@ -100,7 +100,7 @@ BODIES = {
     """,
     "the outcome alone is published": """
         def cb(msg):
-            pub.publish(msg.data > limit)
+            pub.publish(msg.data > limit)  #: ~limit >
     """,
     "assert": """
         def cb(msg):

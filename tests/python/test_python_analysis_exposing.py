@@ -70,6 +70,20 @@ BODIES = {
                 sender.send(3)
         rospy.Subscriber("in", Float64, cb)
     """,
+    "an outcome that is itself published": """
+        from std_msgs.msg import Bool
+        state = Bool()
+        def is_high(value):
+            return value > limit  #: ~limit >
+        def cb(msg):
+            pub.publish(Bool(msg.data < limit))  #: ~limit <
+            state.data = msg.data >= limit or is_high(msg.data)  #: ~limit >=
+            pub.publish(state)
+            rospy.loginfo(msg.data == limit)
+            kept = msg.data != limit
+            rospy.loginfo("%s", kept)
+        rospy.Subscriber("in", Float64, cb)
+    """,
     "publish of something else": """
         class Log:
             def publish(self, text):
@@ -193,3 +207,17 @@ def test_a_mask_by_a_constant(tmp_path: Path) -> None:
     assert analysed(text, tmp_path).comparisons == ()
     unit = analyse_entry(entry_of(tmp_path / "node.py"), replace(load_rules(), constants=True))
     assert [(c.name, c.relation, c.distance) for c in unit.comparisons] == [("3.5", ">", 1)]
+
+
+def test_an_outcome_that_is_published_has_a_path_and_a_distance(tmp_path: Path) -> None:
+    text = _READ + dedent("""
+        def cb(msg):
+            state = Float64()
+            state.data = msg.data < limit
+            pub.publish(state)
+        rospy.Subscriber("in", Float64, cb)
+    """)
+    found = only(analysed(text, tmp_path))
+    assert [step.step for step in found.path] == ["read", "compare", "store", "expose"]
+    assert found.distance == 2
+    assert not analysed(text, tmp_path, profile="thesis").comparisons

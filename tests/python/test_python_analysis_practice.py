@@ -352,9 +352,9 @@ SAMPLES = {
             def cb(self, msg):
                 if self.config is None:
                     return
-                if self.config.enabled and msg.data > self.limit:  #: enabled flag, limit >
+                if self.config.enabled and msg.data > self.limit:  #: ~enabled flag, ~limit >
                     pub.publish(msg)
-                if msg.data > self.config.top:  #: top >
+                if msg.data > self.config.top:  #: ~top >
                     pub.publish(msg)
         Guard()
     """,

@@ -159,13 +159,50 @@ SAMPLES = {
                 self.low = config["low"]
                 return config
             def cb(self, msg):
-                if msg.data > self.high:  #: high >
+                if msg.data > self.high:  #: ~high >
                     pub.publish(msg)
-                if msg.data < self.low:  #: low <
+                if msg.data < self.low:  #: ~low <
                     pub.publish(msg)
-                if msg.data < self.config.other:  #: other <
+                if msg.data < self.config.other:  #: ~other <
                     pub.publish(msg)
         Node()
+    """,
+    "namespaces of dynamic_reconfigure": """
+        from dynamic_reconfigure.client import Client
+        from dynamic_reconfigure.server import Server
+        from pkg.cfg import NodeConfig
+        limits = {}
+        def below(config, level):
+            limits["below"] = config.high
+            return config
+        def global_(config, level):
+            limits["global"] = config.high
+            return config
+        def own(config, level):
+            limits["own"] = config.high
+            return config
+        def other(config):
+            limits["other"] = config["high"]
+        def unknown(config, level):
+            limits["unknown"] = config.high
+            return config
+        Server(NodeConfig, below, "planner")
+        Server(NodeConfig, global_, namespace="/robot/planner/")
+        Server(NodeConfig, own, namespace="~costs")
+        Server(NodeConfig, unknown, rospy.get_name())
+        Client("/planner_node", timeout=3, config_callback=other)
+        def cb(msg):
+            if msg.data > limits["below"]:  #: ~planner/high >
+                pub.publish(msg)
+            if msg.data > limits["global"]:  #: /robot/planner/high >
+                pub.publish(msg)
+            if msg.data > limits["own"]:  #: ~costs/high >
+                pub.publish(msg)
+            if msg.data > limits["other"]:  #: /planner_node/high >
+                pub.publish(msg)
+            if msg.data > limits["unknown"]:  #: ~<dynamic>/high >
+                pub.publish(msg)
+        rospy.Subscriber("in", Float64, cb)
     """,
     "dataclass and property": """
         from dataclasses import dataclass

@@ -184,6 +184,29 @@ def test_a_report_within_a_report_by_a_signal(tmp_path):
 
 
 @pytest.mark.usefixtures("python")
+def test_a_pause_while_both_clocks_are_read_changes_no_times(tmp_path):
+    done = run(
+        tmp_path,
+        """
+        from pytpc.python_runtime import log_file
+        one, real, calls = site("one"), log_file.time_ns, []
+        def late():
+            calls.append(1)
+            if len(calls) % 5 == 0:
+                time.sleep(0.02)
+            return real()
+        over(one, 0, 0)
+        log_file.time_ns = late
+        for number in range(1, 30):
+            RUNTIME.file._sync_at = RUNTIME.file._look_at = 0
+            over(one, number, 0)
+        """,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert [cmp for _, _, cmp, _ in rows(tmp_path)] == list(range(30))
+
+
+@pytest.mark.usefixtures("python")
 def test_a_limit_stops_the_recording_and_not_the_program(tmp_path):
     # 1 MiB has room for 16 chunks; one is the system's, so 15 of 2046 reports fit.
     done = run(
@@ -312,7 +335,7 @@ def test_caps_count_what_they_drop(tmp_path):
 @pytest.mark.usefixtures("python")
 def test_a_wrong_setting_is_said_and_left_out(tmp_path):
     done = run(tmp_path, 'over(site("one"), 1, 0)', TPC_POLICY="sometimes")
-    warning = "tpc: TPC_POLICY=sometimes is ignored: it must be one of every, edges\n"
+    warning = "tpc: TPC_POLICY=sometimes is ignored: it must be one of every, edges, light\n"
     assert done.stderr == warning
     assert len(rows(tmp_path)) == 1
 

@@ -15,7 +15,7 @@ from pytpc.python_runtime.sites import Reported
 
 def test_a_publisher_may_wait_for_a_thread_that_compares(monkeypatch) -> None:
     # As where another thread holds the topic's lock while it compares.
-    sink, config = RosoutSink(), Config(policy="edges")
+    sink, config = RosoutSink(), Config(policy="edges").filled_in().filled_in()
     take = Edges(config, sink, Caps(config, sink)).take
     one, other = Reported("one", 1, False), Reported("other", 2, False)
     lines, ended = [], []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import textwrap
 import traceback
 
 import pytest
@@ -83,6 +84,90 @@ def test_every_time_out_reaches_the_program_and_no_report_is_hidden(tmp_path) ->
     assert found == sorted(set(found))
     assert set(map(int, done.stdout.split())) <= set(found)
     assert recording(tmp_path).malformed == 0
+
+
+# Reports `two` after some steps of the runtime, as a handler of a signal may that comes there.
+INTERRUPT = """
+import pytpc.python_runtime
+root = pytpc.python_runtime.__path__[0]
+def interrupt(*gaps):
+    left, steps, number = list(gaps), 0, 0
+    def step(frame, event, arg):
+        nonlocal steps, number
+        if event == "opcode":
+            steps += 1
+            if steps == left[0]:
+                del left[0]
+                steps, number = 0, number + 1
+                if not left:
+                    sys.settrace(None)
+                over(two, number, 0)
+        return step
+    def call(frame, event, arg):
+        # What is skipped here is called for each report.
+        if not frame.f_code.co_filename.startswith(root) or frame.f_code.co_name in skipped:
+            return None
+        frame.f_trace_opcodes, frame.f_trace_lines = True, False
+        return step
+    # Python 3.12 traces opcodes only where a frame has asked for them before.
+    sys._getframe().f_trace_opcodes = True
+    sys.settrace(call)
+    return left
+"""
+
+
+@pytest.mark.usefixtures("python")
+def test_reports_between_the_steps_of_the_first_one(tmp_path) -> None:
+    program = INTERRUPT + textwrap.dedent("""
+        import random
+        skipped, random = (), random.Random(1)
+        at, is_inside = 0, True
+        while is_inside:
+            at += 7
+            one, two = site("one"), site("two")
+            child = os.fork()
+            if not child:
+                left = interrupt(at, random.randrange(1, 400), random.randrange(1, 400))
+                for number in range(3):
+                    over(one, number, 0)
+                sys.settrace(None)
+                RUNTIME.end()
+                os._exit(len(left) < 3)
+            is_inside = os.waitpid(child, 0)[1] != 0
+        """)
+    done = run(tmp_path, program)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert len(files(tmp_path)) > 100
+    found = recording(tmp_path)
+    assert (found.malformed, found.lost) == (0, {})
+
+
+@pytest.mark.usefixtures("python")
+def test_reports_between_the_steps_in_which_a_chunk_begins(tmp_path) -> None:
+    program = INTERRUPT + textwrap.dedent("""
+        skipped = ("take", "compare", "over")
+        number = reports = 0
+        for at in range(1, 600):
+            one, two = site("one"), site(f"two{at}")
+            over(one, number, 0)
+            # The second in which the clocks are compared again.
+            RUNTIME.file._sync_at = RUNTIME.file._look_at = 0
+            left = interrupt(at)
+            for number in range(number + 1, number + 2048):
+                over(one, number, 0)
+            sys.settrace(None)
+            number, reports = number + 1, reports + (not left)
+        print(reports, number)
+        """)
+    done = run(tmp_path, program)
+    assert (done.returncode, done.stderr) == (0, "")
+    interrupted, made = map(int, done.stdout.split())
+    assert interrupted > 100
+    found = recording(tmp_path)
+    assert (found.malformed, found.lost) == (0, {})
+    assert [cmp for key, _, cmp, _ in rows(tmp_path) if key == "one"] == list(range(made))
+    nested = sum(dropped.count for dropped in found.dropped if dropped.why == "nested")
+    assert len(found.events) + nested == made + interrupted
 
 
 def test_a_report_while_the_first_one_opens_the_file(tmp_path) -> None:

@@ -134,3 +134,10 @@ def test_folders_of_before_and_of_two_recordings(recording, tmp_path):
     path.write_text(json.dumps({**good, "dropped": [{"key": "k"}]}))
     with pytest.raises(InputError, match="not the marks of a recording"):
         load_recording(tmp_path)
+
+
+def test_the_rows_of_a_key_are_in_the_order_of_the_table():
+    found = table(summary(3.0, 2), summary(1.0, 1), summary(2.0, 2))
+    assert found.rows_of(key(2)).tolist() == [1, 2]
+    assert found.rows_of(key(1)).tolist() == [0]
+    assert not found.rows_of(key(7)).size

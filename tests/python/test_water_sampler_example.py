@@ -24,6 +24,7 @@ PYTHON_READ = re.compile(r'rospy\.get_param\("~(\w+)"')
 
 # Where the source compares something that is not named as the parameter is.
 OTHER_NAMES = {
+    "cruise_speed": "step",
     "height_tolerance_cm": "height_tolerance",
     "max_pump_requests": "max_requests",
     "pump_retry_period": "retry_period",

@@ -24,9 +24,18 @@ def report(
 
 
 def site(number: int, key: str) -> bytes:
-    raw = key.encode()
+    return _text(2, number, key)
+
+
+def name(text: str) -> bytes:
+    """The name of a parameter: ``KEY,NAME``."""
+    return _text(8, 0, text)
+
+
+def _text(kind: int, number: int, text: str) -> bytes:
+    raw = text.encode()
     blocks = -(-max(0, len(raw) - 16) // 32)
-    head = struct.pack("<III4x16s", 2, number, len(raw), raw[:16])
+    head = struct.pack("<III4x16s", kind, number, len(raw), raw[:16])
     return head + raw[16:].ljust(32 * blocks, b"\0")
 
 

@@ -16,6 +16,7 @@ from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import cmake_file, installed, log_library, plugin
 from pytpc.build.build import build_workspace, workspace_env
 from pytpc.build.collect import collect_sources
+from pytpc.ingest.reading import read
 from pytpc.ros.ros1.graph import RosGraph
 from pytpc.static.link_unit import LeftOut
 from pytpc.static.static_info import StaticInfo
@@ -158,14 +159,18 @@ def filters_run(install: Path, folder: Path) -> None:
     with RosGraph(environment, folder) as graph:
         ran = subprocess.run(
             [program],
-            env={**environment, "ROS_MASTER_URI": graph.uri, "ROS_IP": "127.0.0.1"},
+            env={
+                **environment,
+                **{"ROS_MASTER_URI": graph.uri, "ROS_IP": "127.0.0.1"},
+                **{"TPC_SINK": "file", "TPC_FOLDER": str(folder / "reports")},
+            },
             capture_output=True,
             text=True,
             timeout=60,
             check=False,
         )
     assert ran.stdout.splitlines()[-1:] == [FILTERED], ran.stderr
-    assert "threshold_information:" in ran.stdout + ran.stderr
+    assert len(read(sorted((folder / "reports").glob("*.tpc"))).events) > 0
 
 
 def check(static: StaticInfo, sources: Path, by_colcon: StaticInfo) -> None:

@@ -11,6 +11,8 @@ import pytest
 
 from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import installed, log_library, plugin, prefix
+from pytpc.ingest.reading import read
+from pytpc.recording.events import Events
 from pytpc.ros.ros1.graph import RosGraph
 from pytpc.static.link_unit import LinkUnit
 from pytpc.static.static_info import collect
@@ -121,13 +123,14 @@ def assert_found(unit: LinkUnit, file: str = "step.cpp") -> None:
     assert (found.read_at.lineno, found.exposed_at.lineno) == (4, 11)
 
 
-def reports(program: Path, folder: Path) -> list[str]:
-    """What a node prints of its comparisons when it runs in a real graph."""
+def reports(program: Path, folder: Path) -> Events:
+    """What a node reports of its comparisons when it runs in a real graph."""
+    files = folder / "reports"
+    settings = {"TPC_SINK": "file", "TPC_FOLDER": str(files), "TPC_FILE_RESERVE": "0"}
     with RosGraph(build_environment(), folder) as graph:
-        node = graph.start("stepper", [str(program)])
+        node = graph.start("stepper", [str(program)], env=settings)
         assert node.popen.wait(20) == 0, node.tail()
-        text = node.log.read_text("utf-8", "replace")
-    return [line for line in text.splitlines() if "threshold_information:" in line]
+    return read(sorted(files.glob("*.tpc"))).events
 
 
 @pytest.fixture(scope="module")
@@ -152,8 +155,9 @@ def test_each_link_unit_of_a_makefile_has_what_is_in_it(made: Path) -> None:
 def test_the_nodes_run_and_report(made: Path, tmp_path: Path, program: str) -> None:
     said = reports(made / program, tmp_path)
     assert len(said) == 9
-    assert sum(",cmp:0.625,thresh:0.5,res:1" in line for line in said) == 1
-    assert sum(",res:1" in line for line in said) == 4
+    over = said.cmp == 0.625
+    assert (said.thresh[over].tolist(), said.res[over].tolist()) == ([0.5], [1])
+    assert said.res.sum() == 4
 
 
 def test_a_changed_file_changes_the_static_information(made: Path, tmp_path: Path) -> None:

@@ -213,6 +213,37 @@ int signals(const Arguments &A) {
   return 0;
 }
 
+/// exits: a handler ends the process while the program reports.
+int exits(const Arguments &) {
+  Keys K(100);
+  struct sigaction Action{};
+  Action.sa_handler = [](int) { std::exit(0); };
+  sigaction(SIGPROF, &Action, nullptr);
+  itimerval Soon{{0, 0}, {0, 20'000}};
+  setitimer(ITIMER_PROF, &Soon, nullptr);
+  for (uint64_t I = 0;; ++I)
+    report(K[I], I, 0);
+}
+
+/// together THREADS SITES: so many threads begin at once, and each evaluates
+/// each site once.
+int together(const Arguments &A) {
+  Keys K(std::stoul(A[1]));
+  std::atomic<bool> Begun{false};
+  std::vector<std::thread> All;
+  for (unsigned long T = std::stoul(A[0]); T; --T)
+    All.emplace_back([&] {
+      while (!Begun)
+        std::this_thread::yield();
+      for (unsigned long I = 0; I < std::stoul(A[1]); ++I)
+        report(K[I], 0, 0);
+    });
+  Begun = true;
+  for (std::thread &T : All)
+    T.join();
+  return 0;
+}
+
 /// cancelled THREADS: each reports until it is cancelled.
 int cancelled(const Arguments &A) {
   static auto *K = new Keys(1);
@@ -291,6 +322,19 @@ int edges(const Arguments &A) {
   return 0;
 }
 
+/// hot REPORTS EVERY SITES_MS: one site, as fast as it goes; the outcome changes
+/// after each EVERY reports (0: never); then waits.
+int hot(const Arguments &A) {
+  uint64_t Reports = std::stoull(A[0]), Every = std::stoull(A[1]);
+  Keys K(1);
+  for (uint64_t I = 0; I < Reports; ++I) {
+    bool Result = Every && I / Every % 2;
+    log_one(K[0], Result, Result ? 3 : 1, 2, Result);
+  }
+  waitMs(std::stol(A[2]));
+  return 0;
+}
+
 /// odd: values that are no usual numbers, at one site.
 int odd(const Arguments &) {
   Keys K(1);
@@ -323,8 +367,10 @@ int main(int Count, char **Words) {
       {"forked", forked},      {"ends", ends},
       {"signals", signals},    {"paced", paced},
       {"edges", edges},        {"odd", odd},
+      {"hot", hot},
       {"names", names},        {"closed", closed},
-      {"cancelled", cancelled}};
+      {"cancelled", cancelled},
+      {"exits", exits},        {"together", together}};
   auto Found = Count > 1 ? Known.find(Words[1]) : Known.end();
   if (Found == Known.end())
     return 2;

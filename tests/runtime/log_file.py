@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 HEADER, CHUNK, RECORD = 4096, 65536, 32
-SUMMARY = struct.Struct("<IIqddqIIQQQddddddQqq")
+SUMMARY = struct.Struct("<IIqddqIIQQQddddddQqqQQ")
 NAMES = [
     "what",
     "site",
@@ -33,6 +33,8 @@ NAMES = [
     "flops",
     "begin_ros",
     "end_ros",
+    "seen",
+    "about",
 ]
 
 

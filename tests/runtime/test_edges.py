@@ -104,3 +104,12 @@ def test_caps_hold_for_flops_and_summaries_stay_whole(drive, files):
     assert dropped > 0
     assert sum(s["flops"] for s in file.all_summaries) == 19
     assert sum(s["count"] for s in file.all_summaries) == 10_000
+
+
+def test_a_thousand_threads_begin_at_once(drive, files):
+    assert drive("together", 1000, 8, policy="edges", period=0.005).returncode == 0
+    file = log_file.read(files()[0])
+    counts = defaultdict(int)
+    for summary in file.all_summaries:
+        counts[file.keys[summary["site"]]] += summary["count"]
+    assert counts == {key(n): 1000 for n in range(8)}

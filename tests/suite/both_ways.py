@@ -30,10 +30,11 @@ from pytpc.base.errors import RunError
 from pytpc.ingest.ros1 import decode_log
 from pytpc.ros.ros1.graph import GraphProcess, RosGraph
 from pytpc.ros.ros1.master import Master
+from pytpc.ros.ros1.recorder import BATCH, REPORT
 from pytpc.ros.ros1.subscriber import RawSubscriber, Source
 from suite.expectations import PACKAGE, load
 
-BATCH = 12
+NODES_AT_ONCE = 12
 INPUTS = 150
 START_PATIENCE_S = 90.0
 SETTLED_S = 0.4
@@ -43,7 +44,6 @@ LONGEST_S = 120.0
 _FEEDER = Path(__file__).with_name("feeder.py")
 _WORDS = re.compile(r'"([A-Za-z_ ]{1,12})"')
 _BY_THE_CLOCK = re.compile(r"^actionlib_msgs/|Action(Goal|Result|Feedback)$")
-_REPORT = b"threshold_information:"
 _FED = {"input": "std_msgs/Float64", "aux": "std_msgs/Float64", "text": "std_msgs/String"}
 
 Topics = dict[str, list[bytes]]
@@ -62,7 +62,7 @@ class Variant:
 class Published:
     """What one node published in one variant: the messages of each topic, in order.
 
-    ``reports`` counts what the instrumentation reported on /rosout, ``status`` is how it ended.
+    ``reports`` counts the messages of the instrumentation on /rosout, ``status`` is how it ended.
     """
 
     topics: Topics = field(default_factory=dict)
@@ -103,7 +103,7 @@ def run_all(
     *,
     seed: int = 1,
     package: Path = PACKAGE,
-    at_once: int = BATCH,
+    at_once: int = NODES_AT_ONCE,
     least_s: float = 0.0,
 ) -> Results:
     """Run all nodes that all variants have; ``results[node][variant]``.
@@ -297,7 +297,7 @@ class _Batch:
                 data = timeless(source.type, source.definition, data)
             result.topics.setdefault(rest[0], []).append(data)
             return True
-        result.reports += decode_log(data).msg.startswith(_REPORT)
+        result.reports += decode_log(data).msg.startswith((REPORT, BATCH))
         return False
 
     def _different(self) -> Iterator[str]:

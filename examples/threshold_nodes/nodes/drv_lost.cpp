@@ -1,4 +1,4 @@
-// Thresholds mixed with values that are not constant: their own unit is lost.
+// Thresholds mixed with values that are not constant.
 #include <ros/ros.h>
 #include <std_msgs/Float64.h>
 

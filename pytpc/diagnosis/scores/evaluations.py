@@ -38,7 +38,6 @@ class LoggedEvaluations:
         self.events = events
         self.summaries = summaries
         self._codes = {key: code for code, key in enumerate(events.keys)}
-        self._summary_codes = {key: code for code, key in enumerate(summaries.keys)}
         self._of: dict[str, list[KeyRows]] = {}
 
     @cached_property
@@ -64,8 +63,8 @@ class LoggedEvaluations:
     @cached_property
     def _ours(self) -> Bools:
         """Which summaries are of the TPCs."""
-        ours = [self._summary_codes[key] for key in self._codes if key in self._summary_codes]
-        return np.isin(self.summaries.key, ours)
+        ours = np.array([key in self._codes for key in self.summaries.keys] or [False])
+        return np.asarray(ours[self.summaries.key])
 
     def last(self, key: str, mark_ns: int) -> Evaluation:
         """The last known evaluation up to the mark: a report, or the last of a summary.
@@ -89,7 +88,7 @@ class LoggedEvaluations:
 
     def _rows_of(self, key: str) -> Int64s:
         """The summaries of a key; a table may know a key and have none."""
-        return np.flatnonzero(self.summaries.key == self._summary_codes.get(key, -1))
+        return self.summaries.rows_of(key)
 
 
 class KeyRows(NamedTuple):

@@ -71,9 +71,7 @@ def type2_of_summaries(
     begins = marks - round(formula.window_s * 1e9)
     nearness = distances / distances.max(initial=1.0)
     for code, key in enumerate(events.keys):
-        if key not in summaries.keys:
-            continue
-        rows = np.flatnonzero(summaries.key == summaries.keys.index(key))
+        rows = summaries.rows_of(key)
         if rows.size:
             # What is beyond a double is looked for where it matters, in ``scores``.
             with np.errstate(divide="ignore", invalid="ignore", over="ignore"):

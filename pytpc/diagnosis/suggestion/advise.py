@@ -122,7 +122,7 @@ def _suggested(
     question: Question,
 ) -> tuple[Suggestion, Declared | None]:
     """The suggestion for a suspect, and what is declared of its parameter."""
-    about = declared_for(question.declared, suspect, static_info.source_path(suspect.key))
+    about = declared_for(question.declared or (), suspect, static_info.source_path(suspect.key))
     at = At(mark.time_ns, suspect.type)
     return smallest_change(
         recording, static_info, suspect.comparison, at, question.about(about)
@@ -142,6 +142,10 @@ def declared_for(
     if not said:
         # Full names are those of messages: other nodes have parameters of their own.
         said = [one for one in same if not one.parameter.startswith("/")]
+        if not said:
+            # A file has the name of the field alone; the server's handle adds its namespace.
+            field = suspect.parameter.rpartition("/")[2]
+            said = [one for one in declared if one.parameter == field]
         if source is not None:
             above = {str(folder) for folder in source.parents}
             said = [one for one in said if one.package in above]
@@ -288,7 +292,7 @@ def advise_blamed(
     found = []
     for accused in blame.suspects[: question.top]:
         name = accused.parameter
-        about = declared_for(question.declared, accused, static_info.source_path(accused.key))
+        about = declared_for(question.declared or (), accused, static_info.source_path(accused.key))
         untyped = [replace(mark, type=None) for mark in blame.marks]
         value = remedy(recording, static_info, name, untyped, question.about(about))
         value = _as_before(value, question.changes)

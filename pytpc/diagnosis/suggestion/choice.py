@@ -19,8 +19,7 @@ _NOTHING = 1e-300
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """A value, the interval of good values that it is in, and what kept it from the interval's
-    end."""
+    """A value, its interval of good values, and what kept it from the interval's end."""
 
     value: float
     interval: Interval

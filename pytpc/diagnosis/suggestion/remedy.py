@@ -281,8 +281,7 @@ def _bounds(present: float, rises: bool, flown: Sequence[float]) -> Interval:
 def _value(
     wanted: _Wanted, known: Sequence[KnownValue], within: Interval
 ) -> tuple[float | None, Basis]:
-    """The value inside ``within`` with the best evidence, and which evidence; None if there is
-    none."""
+    """The value inside ``within`` with the best evidence, if there is one, and which evidence."""
     case, found, lasts, least = wanted.case, wanted.found, wanted.lasting, wanted.least
     possible = case.possible
     for one in known:

@@ -162,8 +162,7 @@ def _second_type(case: SuggestionCase) -> Intervals:
 
 
 def _still(case: SuggestionCase) -> tuple[Bools, Floats]:
-    """Outcomes and compared values of the evaluations that the present threshold would not
-    change."""
+    """Outcomes and compared values of the evaluations that the present threshold keeps."""
     evidence = case.evidence
     finite = np.isfinite(evidence.cmp)
     cmps = evidence.cmp[finite]

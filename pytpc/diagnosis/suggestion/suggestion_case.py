@@ -182,10 +182,10 @@ class _KeptEnds:
         cls, summaries: Summaries | None, key: str, mark_ns: int, window_s: float
     ) -> _KeptEnds | None:
         """None where there are none of ``key`` before the mark."""
-        if summaries is None or key not in summaries.keys:
+        if summaries is None or not summaries.rows_of(key).size:
             return None
         begins = mark_ns - round(window_s * 1e9)
-        own = summaries.take(summaries.key == summaries.keys.index(key))
+        own = summaries.take(summaries.rows_of(key))
         own = own.take(own.begin_ns <= mark_ns)
         if not len(own):
             return None

@@ -165,9 +165,9 @@ def _window(recording: Recording, suspect: Suspect, mark: Mark, window_s: float)
     count, true = int(rows.size), int(events.result[rows].sum())
     one = true in (0, count)
     summaries = recording.summaries
-    if suspect.key in summaries.keys:
+    own = summaries.take(summaries.rows_of(suspect.key))
+    if len(own):
         # They count the events, too.
-        own = summaries.take(summaries.key == summaries.keys.index(suspect.key))
         own = own.take((own.begin_ns >= begin_ns) & (own.end_ns <= mark.time_ns))
         if len(own):
             count = int(own.count.sum())

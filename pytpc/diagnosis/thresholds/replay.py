@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -149,7 +150,7 @@ def tracks_of(
         except NoUnitError as why:
             without.append(f"{place}: {why}")
             continue
-        track = _track(events, summaries, found, tree)
+        track = _TrackStore.of(events).track(events, summaries, found, tree)
         if track.time_ns.size or len(track.kept):
             tracks.append(track)
     return name, tracks, without
@@ -167,18 +168,43 @@ def _name_of(static_info: StaticInfo, parameter: str) -> str:
     raise InputError(f"no comparison with a parameter {parameter} is known")
 
 
+class _TrackStore:
+    """The tracks of one table, so that many questions about a parameter make them once.
+
+    They repeat the table's columns, so only those of small tables are kept.
+    """
+
+    def __init__(self) -> None:
+        self._known: dict[str, tuple[Summaries, Track]] = {}
+        self._rows = 0
+
+    @classmethod
+    def of(cls, events: Events) -> _TrackStore:
+        """The one of this table, as long as the table exists."""
+        return _STORES.setdefault(events, cls())
+
+    def track(self, events: Events, summaries: Summaries, found: Comparison, tree: Tree) -> Track:
+        """The track of a comparison."""
+        known = self._known.get(found.key)
+        if known is not None and known[0] is summaries and known[1].comparison is found:
+            return known[1]
+        made = _track(events, summaries, found, tree)
+        self._rows += made.time_ns.size
+        if self._rows <= _MOST_KEPT:
+            self._known[found.key] = summaries, made
+        return made
+
+
+_STORES: WeakKeyDictionary[Events, _TrackStore] = WeakKeyDictionary()
+_MOST_KEPT = 4_000_000
+
+
 def _track(events: Events, summaries: Summaries, found: Comparison, tree: Tree) -> Track:
-    code = events.keys.index(found.key) if found.key in events.keys else -1
-    # Sorting all keys is not worth it for one of them.
-    if code >= 0 and "by_key" in vars(events):
-        rows = events.by_key.rows(code)
-    else:
-        rows = np.flatnonzero(events.key == code)
+    rows = events.rows_of(found.key)
     time_ns, node = events.time_ns[rows], events.node[rows].astype(np.int64)
     result = events.result[rows]
     flops = _flops(result, node)
-    kept_code = summaries.keys.index(found.key) if found.key in summaries.keys else -1
-    kept = summaries.take(summaries.key == kept_code)
+    kept = summaries.take(summaries.rows_of(found.key))
     return Track(
         found,
         tree,
@@ -210,11 +236,14 @@ def _flops(result: Bools, node: Int64s) -> Int64s:
 def _not_in(kept: Summaries, time_ns: Int64s, node: Int64s, nodes: Sequence[str]) -> Bools:
     """bool[n]: evaluations that no summary of their node counts."""
     own = np.ones(time_ns.size, dtype=np.bool_)
-    for row in range(len(kept)):
-        name = kept.nodes[kept.node[row]]
-        inside = (time_ns >= kept.begin_ns[row] - _SLACK_NS) & (
-            time_ns <= kept.end_ns[row] + _SLACK_NS
-        )
-        codes = [code for code, other in enumerate(nodes) if other == name]
-        own &= ~(inside & np.isin(node, codes))
+    begins = np.searchsorted(time_ns, kept.begin_ns - _SLACK_NS, side="left")
+    ends = np.searchsorted(time_ns, kept.end_ns + _SLACK_NS, side="right")
+    for code, name in enumerate(nodes):
+        if name not in kept.nodes:
+            continue
+        # How many spans of this node hold each evaluation.
+        theirs = (kept.node == kept.nodes.index(name)) & (begins < ends)
+        steps = np.bincount(begins[theirs], minlength=time_ns.size + 1)
+        steps = steps - np.bincount(ends[theirs], minlength=time_ns.size + 1)
+        own &= (np.cumsum(steps)[:-1] == 0) | (node != code)
     return own

@@ -107,8 +107,7 @@ def _marks(numbers: Sequence[int], of: int) -> str:
 
 @dataclass(frozen=True)
 class TogetherView:
-    """The verdict, the value to try for the first suspect, and the next suspects with
-    probabilities.
+    """The verdict, the value to try for the first suspect, and the other suspects.
 
     ``remedy`` is empty without a suspect or a suggestion. ``notes`` say what limits the verdict.
     """

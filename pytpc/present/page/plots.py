@@ -21,11 +21,12 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from pytpc.present.page.environment import seen
-from pytpc.present.page.series import PlotData
+from pytpc.present.page.series import SPANS, PlotData, joined_spans
 from pytpc.recording.events import Floats
 from pytpc.recording.marks import MarkType
 
@@ -133,10 +134,11 @@ def _values(axes: Axes, data: PlotData, style: EvidenceStyle) -> None:
     colour = COLOUR["culprit" if style.culprit else "value"]
     finite, limit = _drawable(data.cmp), _drawable(data.thresh)
     axes.plot(data.time, finite, color=colour, linewidth=1.4)
-    for begin, end, lowest, highest in data.kept.T:
-        axes.fill_between(
-            [begin, max(end, begin + 1e-3)], lowest, highest, color=colour, alpha=0.35, linewidth=1
-        )
+    begin, end, lowest, highest = joined_spans(data.kept, SPANS)
+    end = np.maximum(end, begin + 1e-3)
+    corners = [(begin, lowest), (begin, highest), (end, highest), (end, lowest)]
+    boxes = np.array(corners).transpose(2, 0, 1)
+    axes.add_collection(PolyCollection(list(boxes), color=colour, alpha=0.35, linewidth=1))
     # A parameter keeps its value while nothing is compared with it.
     known = np.flatnonzero(np.isfinite(data.time))
     around = [*known[:1], *known, *known[-1:]]

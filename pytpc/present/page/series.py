@@ -14,6 +14,9 @@ from pytpc.recording.summaries import Summaries
 POINTS = 1200
 """The most points of a line; a plot is about 600 pixels wide."""
 
+SPANS = 300
+"""The most summaries in a plot."""
+
 BINS = 600
 """The number of columns of a lane of the timeline."""
 
@@ -55,8 +58,7 @@ def kept_of(summaries: Summaries, key: str, start_ns: int) -> Floats:
 
     Times are seconds since the recording began; summaries without finite values are left out.
     """
-    code = summaries.keys.index(key) if key in summaries.keys else -1
-    own = summaries.take(summaries.key == code)
+    own = summaries.take(summaries.rows_of(key))
     found = np.stack(
         [
             (own.begin_ns - start_ns) / 1e9,
@@ -66,6 +68,28 @@ def kept_of(summaries: Summaries, key: str, start_ns: int) -> Floats:
         ]
     )
     return found[:, np.isfinite(found).all(axis=0)]
+
+
+def joined_spans(kept: Floats, most: int) -> Floats:
+    """The summaries of `kept_of`, those of one column of a plot joined; at most ``most`` and one.
+
+    A plot of 600 pixels shows no more, and each span is drawn by itself.
+    """
+    if kept.shape[1] <= most:
+        return kept
+    begin, end, lowest, highest = kept
+    width = (float(end.max()) - float(begin.min())) / most
+    column = np.floor((begin - begin.min()) / width if width > 0 else np.zeros(begin.size))
+    order = np.argsort(column, kind="stable")
+    first = np.flatnonzero(np.diff(column[order], prepend=-1.0))
+    return np.stack(
+        [
+            np.minimum.reduceat(begin[order], first),
+            np.maximum.reduceat(end[order], first),
+            np.minimum.reduceat(lowest[order], first),
+            np.maximum.reduceat(highest[order], first),
+        ]
+    )
 
 
 def plot_data(recording: Recording, key: str, mark_ns: int) -> PlotData:
@@ -158,8 +182,8 @@ def lane(recording: Recording, key: str, bins: int = BINS) -> npt.NDArray[np.int
         usual = min(_GAP_S * 1e9, _HOLD_PERIODS * float(np.median(steps)))
         for row in np.flatnonzero((np.diff(place) > 1) & (steps <= usual)):
             states[place[row] + 1 : place[row + 1]] = TRUE if result[row] else FALSE
-    if key in summaries.keys:
-        own = summaries.take(summaries.key == summaries.keys.index(key))
+    own = summaries.take(summaries.rows_of(key))
+    if len(own):
         ends = np.stack([own.begin_ns, own.end_ns]) - start_ns
         spans = np.clip(ends * bins // max(1, end_ns - start_ns), 0, bins - 1)
         known = np.where(own.flops > 0, BOTH, np.where(own.result, TRUE, FALSE))

@@ -211,7 +211,7 @@ class Follower:
     def _named(self, fact: Fact, user: Instr, keys: list[str]) -> None:
         """An entry of a table of parameters."""
         for key in dict.fromkeys(keys):
-            above = fact.name.rstrip("/")
+            above = (fact.name or fact.read.namespace).rstrip("/")
             name = f"{above}/{key}" if above not in ("", "~") else f"{above}{key}"
             if len(name) <= _LONGEST_NAME:
                 self._reach(Fact(user, fact.read, name, fact.how, fact.stack, fact))

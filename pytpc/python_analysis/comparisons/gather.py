@@ -111,8 +111,10 @@ def _end(node: ast.AST) -> tuple[int, int]:
 class Gatherer:
     """Joins the comparisons of each place, and drops those whose threshold is not a parameter."""
 
-    def __init__(self, follower: Follower, found: Slice) -> None:
+    def __init__(self, follower: Follower, found: Slice, counts_shown: bool) -> None:
+        """``counts_shown``: a comparison whose outcome is itself exposed counts."""
         self.follower = follower
+        self._shown = found.shown if counts_shown else {}
         self.slice = found
         self._kinds: dict[tuple[Instr, Stack], frozenset[str]] = {}
 
@@ -161,14 +163,17 @@ class Gatherer:
         return [
             each
             for each in self.follower.compared.values()
-            if any(predicate in distance for predicate in each.predicates)
+            if each.at in self._shown or any(branch in distance for branch in each.predicates)
         ]
 
     def _nearest(self, found: Found) -> bool:
         distance = self.slice.distance
         near = [predicate for predicate in found.predicates if predicate in distance]
         if not near:
-            return False
+            if not found.facts or found.at not in self._shown:
+                return False
+            found.predicate, found.distance = found.at, self._shown[found.at]
+            return True
         found.predicate = min(near, key=lambda each: (distance[each], each.number))
         found.distance = distance[found.predicate]
         return True

@@ -11,7 +11,7 @@ from pytpc.python_analysis.flow.value_flow import Flow, Stack
 from pytpc.python_analysis.ir.instructions import Function, Instr
 from pytpc.python_analysis.points_to.call_table import CallTable, Given
 from pytpc.python_analysis.points_to.objects import Obj
-from pytpc.python_analysis.rules_file import Argument, Rules
+from pytpc.python_analysis.rules_file import Argument, ConfigRule, Rules
 from pytpc.static.link_unit import Default
 
 Context = tuple[Stack, dict[Instr, tuple[object, ...]]]
@@ -23,8 +23,9 @@ _DEEPEST = 3
 class Read:
     """A parameter read: ``instr`` has its value.
 
-    ``is_table``: the value has parameters as its fields (a dynamic_reconfigure config). ``stacks``:
-    the calls, the innermost last, through which its function reads this name.
+    ``is_table``: the value has parameters as its fields (a dynamic_reconfigure config), whose names
+    are in ``namespace``. ``stacks``: the calls, the innermost last, through which its function
+    reads this name.
     """
 
     name: str
@@ -32,6 +33,7 @@ class Read:
     instr: Instr
     default: Default = None
     is_table: bool = False
+    namespace: str = ""
     type: str = ""
     stacks: tuple[Stack, ...] = ((),)
 
@@ -70,12 +72,23 @@ def find_reads(flow: Flow, constants: Constants, rules: Rules) -> list[Read]:
             if path in rules.reads:
                 found += _read(instr, path, given, constants, rules)
             if path in rules.configs:
-                where, place = rules.configs[path]
-                params = _handed(flow, argument(given, where), place)
-                found += [Read("", path, param, is_table=True) for param in params]
+                row = rules.configs[path]
+                namespace = _namespace(argument(given, row.namespace), row, constants)
+                params = _handed(flow, argument(given, row.callback), row.config)
+                found += [
+                    Read("", path, param, is_table=True, namespace=namespace) for param in params
+                ]
             if path in rules.lists:
                 found += _listed(flow, instr, path, given, lists)
     return sorted(found, key=lambda read: (read.instr.number, read.name))
+
+
+def _namespace(given: Instr | None, row: ConfigRule, constants: Constants) -> str:
+    """The namespace of a config's fields: ``~``, ``~planner``, ``/robot/planner``."""
+    texts = [""] if given is None else constants.names(given)
+    text = texts[0] if len(texts) == 1 else DYNAMIC
+    own = row.is_private and not text.startswith(("/", "~"))
+    return f"~{text}" if own else text
 
 
 def _read(

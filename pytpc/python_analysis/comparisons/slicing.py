@@ -22,12 +22,14 @@ from pytpc.python_analysis.ir.instructions import Block, Function, Instr
 class Slice:
     """``distance``: branch -> distance. ``nearest``: instruction -> the exposing statement.
 
+    ``shown``: comparison -> distance, where a value of the slice is computed from its outcome.
     ``because``: instruction -> the one that brought it into the slice, and how (``control``,
     ``data``, ``call``). ``holder``: a call that chooses a value -> the instruction of the slice
     that has it in its expression.
     """
 
     distance: dict[Instr, int] = field(default_factory=dict)
+    shown: dict[Instr, int] = field(default_factory=dict)
     nearest: dict[Instr, Exposed] = field(default_factory=dict)
     because: dict[Instr, tuple[Instr, str] | None] = field(default_factory=dict)
     holder: dict[Instr, Instr] = field(default_factory=dict)
@@ -139,9 +141,9 @@ class Slicer:
                 self.slice.nearest.setdefault(here, self.slice.nearest[instr])
             if here in self._choosing:
                 # Like the branch of a conditional expression, whose value is a step of its own.
-                self.slice.distance.setdefault(here, number + 1)
-                self.slice.nearest.setdefault(here, self.slice.nearest[instr])
-                self.slice.holder.setdefault(here, instr)
+                self._hold(here, instr, self.slice.distance, number + 1)
+            if here.op == "compare":
+                self._hold(here, instr, self.slice.shown, number)
             if (number == 1 and here is instr) or here.op in ("call", "return", "iter"):
                 # The publisher itself is not published.
                 for arg in here.args[1:] if here is instr and here.op == "call" else here.args:
@@ -151,6 +153,12 @@ class Slicer:
                 if arg not in seen:
                     seen.add(arg)
                     waiting.append(arg)
+
+    def _hold(self, part: Instr, instr: Instr, table: dict[Instr, int], number: int) -> None:
+        """Note the distance of a part of the expression of ``instr``."""
+        table.setdefault(part, number)
+        self.slice.nearest.setdefault(part, self.slice.nearest[instr])
+        self.slice.holder.setdefault(part, instr)
 
     def _operands(self, instr: Instr) -> tuple[Instr, ...]:
         """The operands from which the value of the instruction is computed."""

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from pytpc.base.errors import RunError
+from pytpc.base.wording import listed
 from pytpc.python_runtime.config import NAMES
 from pytpc.ros.ros1.connection import LENGTH, ServiceType, call_service
 from pytpc.ros.ros1.master import Master, reason_of
@@ -112,7 +113,8 @@ def chosen(running: Sequence[str], named: Iterable[str]) -> list[str]:
         )
     for name in wanted:
         if name not in running:
-            raise RunError(f"{name} is not a running instrumented node; there are {_list(running)}")
+            there = listed(running, _LISTED)
+            raise RunError(f"{name} is not a running instrumented node; there are {there}")
     return list(dict.fromkeys(wanted)) or list(running)
 
 
@@ -123,8 +125,3 @@ def values_of(message: str) -> dict[str, str]:
     {'sink': 'file', 'file': '/a b.tpc', 'dropped': '0'}
     """
     return dict(_WORD.findall(message))
-
-
-def _list(names: Sequence[str]) -> str:
-    shown = ", ".join(names[:_LISTED])
-    return shown if len(names) <= _LISTED else f"{shown} and {len(names) - _LISTED} more"

@@ -28,6 +28,7 @@ from pytpc.ros.ros1.master import Master
 from pytpc.ros.ros1.subscriber import RawSubscriber, Source
 
 REPORT = b"threshold_information:"
+BATCH = b"threshold_batch:"
 NODE_NAME = "/tpc_recorder"
 STATUS_PERIOD_S = 0.2
 DRAIN_S = 2.0
@@ -54,6 +55,7 @@ class Recorder:
         self._sim_time = sim_time
         self._clock_ns = 0
         self._counter: LossCounter[str] = LossCounter()
+        self._batches: LossCounter[str] = LossCounter()
         self._reports = 0
         self._done_ns: int | None = None
         self._early: list[tuple[Source, bytes]] = []
@@ -85,6 +87,8 @@ class Recorder:
             sender = source.node or log.node.decode("utf-8", "replace")
             self._counter.see(sender, log.seq, latched=source.latched)
             self._reports += log.msg.startswith(REPORT)
+            if log.msg.startswith(BATCH):
+                self._reports += self._batches.see_text(sender, log.msg[len(BATCH) :])
         elif source.topic == _REPORTS:
             self._reports += self._counter.see_text(source.node, decode_string(data))
         elif source.topic == self._until and any(data) and self._done_ns is None:

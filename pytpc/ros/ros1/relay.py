@@ -26,6 +26,7 @@ TOPIC = "/threshold_information"
 _NODE = "tpc_relay"
 _REPORT = "threshold_information"
 _ACCOUNTS = ("threshold_summary", "threshold_dropped")
+_BATCH = "threshold_batch"
 # What a slow subscriber may leave waiting before rospy drops the oldest.
 _QUEUE = 65_536
 _WATCH_S = 2.0
@@ -47,6 +48,20 @@ def line_of(message: str, stamp_ns: int) -> str | None:
         return None
     seconds, nanoseconds = divmod(stamp_ns, 10**9)
     return f"{seconds}.{nanoseconds // 100:07d},{rest if word == _REPORT else message}"
+
+
+def lines_of(message: str, stamp_ns: int) -> list[str]:
+    """The lines on the topic for the text of a log message, which may be a batch.
+
+    The short summaries of a batch are left out: nobody who knows only the topic reads them.
+
+    >>> lines_of("threshold_batch:#seq:0\\n1.5,K,1,cmp:2,thresh:1,res:1\\n~K,1,2,1,9", 0)
+    ['1.5,K,1,cmp:2,thresh:1,res:1']
+    """
+    if message.startswith(f"{_BATCH}:"):
+        return [line for line in message.split("\n")[1:] if line and line[0] not in "@~"]
+    line = line_of(message, stamp_ns)
+    return [] if line is None else [line]
 
 
 class Relay:
@@ -75,8 +90,7 @@ class Relay:
             self.malformed += 1
             return
         self._counter.see(sender or log.node.decode("utf-8", "replace"), log.seq)
-        line = line_of(log.msg.decode("utf-8", "replace"), log.stamp_ns)
-        if line is not None:
+        for line in lines_of(log.msg.decode("utf-8", "replace"), log.stamp_ns):
             self._publish(line)
             self.passed_on += 1
 

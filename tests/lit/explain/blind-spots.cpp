@@ -20,14 +20,14 @@ struct Message {
 
 void step(ros::NodeHandle &Handle, const std::string &Name, double Value,
           const std::function<void()> &Callback) {
-  double Factor, Shown, Kept, Hidden, Sent, Own;
-  Handle.param("factor", Factor, 0.5);
+  double Gain, Shown, Kept, Hidden, Sent, Own;
+  Handle.param("gain", Gain, 0.5);
   Handle.param("shown", Shown, 0.5);
   Handle.param("kept", Kept, 0.5);
   Handle.param("hidden", Hidden, 0.5);
   Handle.param("sent", Sent, 0.5);
-  // CHECK-NEXT: lost_value factor [[#@LINE+1]] step: mixed with another variable
-  if (Value > Factor * Value)
+  // CHECK-NEXT: lost_value gain [[#@LINE+1]] step: mixed with another variable, and compared with a constant
+  if (Gain * Value > 10)
     keep(true);
   // CHECK-NEXT: lost_value shown [[#@LINE+1]] step: handed to show(), which is not analysed
   show(Shown);

@@ -11,11 +11,12 @@ double Other;
 bool step(ros::NodeHandle &Handle, double V) {
   double Limit;
   Handle.param("limit", Limit, 0.5);
-  // CHECK: 2 comparisons, 1 lost
+  // CHECK: 3 comparisons, 0 lost
   // CHECK-DAG: 'limit' as 2 * x compared in {{.*}} at [[#@LINE+1]]:14 decides at [[#@LINE+2]]:7
   bool B = V > 2 * Limit;
   if (B)
     return true;
+  // CHECK-DAG: 'limit' as x + Other compared in {{.*}} at [[#@LINE+1]]:9 decides at [[#@LINE+1]]:
   if (V > Limit + Other)
     return false;
   // CHECK-DAG: 'limit' as x compared in {{.*}} at [[#@LINE+1]]:{{.*}} later decides at [[#@LINE+2]]:7

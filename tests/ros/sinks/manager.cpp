@@ -1,5 +1,5 @@
-// A manager with two nodelets that report, 100 times a second each: what runs
-// in one process has one sink and one service.
+// A manager with two nodelets that report, 100 times a second each, and read
+// parameters: what runs in one process has one sink and one service.
 
 #include <nodelet/loader.h>
 #include <nodelet/nodelet.h>
@@ -12,8 +12,15 @@ namespace {
 
 class Reporting : public nodelet::Nodelet {
   void onInit() override {
-    Key = "00000000-0000-4000-8000-00000000000";
-    Key += getName() == "/first" ? "1" : "2";
+    Key = getName() == "/first" ? "00000001" : "00000002";
+    Key += "-0000-4000-8000-000000000000";
+    // As instrumented code does before it reads the parameter.
+    const std::string Limit = "limit";
+    log_read(const_cast<char *>(Key.c_str()), &getPrivateNodeHandle(), &Limit,
+             false);
+    log_read(const_cast<char *>(Key.c_str()), nullptr, "~shared", true);
+    log_read(const_cast<char *>(Key.c_str()), &getPrivateNodeHandle(),
+             "not a name", true);
     Timer = getNodeHandle().createWallTimer(
         ros::WallDuration(0.01), [this](const ros::WallTimerEvent &) {
           log_one(const_cast<char *>(Key.c_str()), true, ++Count, 0.5, true);

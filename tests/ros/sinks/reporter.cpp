@@ -34,7 +34,7 @@ static double option(int Count, char **Words, const char *Name,
 /// before the fork, 100 and more for the threads.
 static std::string key(int Number) {
   char Text[40];
-  std::snprintf(Text, sizeof(Text), "00000000-0000-4000-8000-%012d", Number);
+  std::snprintf(Text, sizeof(Text), "%08d-0000-4000-8000-000000000000", Number);
   return Text;
 }
 

@@ -116,7 +116,7 @@ def _suggested(repairs: Sequence[Repair], chains: Sequence[Chain], part: Part) -
     told = {False: "gone", True: "gone and no new one"}
     found = []
     for clean, what in told.items():
-        text = f"Error {what} with the value that TPC suggests for the changed parameter"
+        text = f"Error {what} with TPC's value for the changed parameter"
         name = f"suggestions-{_GONE[clean]}-{part.name}"
         share = gone(repairs, part, clean=clean)
         found += _share(name, f"{text}, {part.title}", share, TARGET)

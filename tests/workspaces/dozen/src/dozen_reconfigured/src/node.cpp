@@ -14,7 +14,7 @@ public:
 
 private:
   void receive(const std_msgs::Float64 &message) {
-    if (message.data > threshold_) // TPC threshold
+    if (message.data > threshold_) // TPC ~threshold
       publisher_.publish(message);
   }
   ros::NodeHandle handle_;

@@ -1,0 +1,132 @@
+//===- InstrumentReads.cpp ------------------------------------------------===//
+#include "instrument/InstrumentReads.h"
+
+#include "llvm/BinaryFormat/Dwarf.h"
+#include "llvm/IR/DebugInfoMetadata.h"
+#include "llvm/IR/IRBuilder.h"
+#include "llvm/IR/Module.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+/// `void log_read(char *key, const void *handle, const void *name, bool text)`
+static constexpr StringLiteral LogName = "_Z8log_readPcPKvS1_b";
+
+/// The offset in bytes of the field \p Name in the class that \p Method is a
+/// method of; none if the debug information does not have it.
+static std::optional<uint64_t> offsetOf(const Function &Method,
+                                        StringRef Name) {
+  const DISubprogram *SP = Method.getSubprogram();
+  const auto *Class =
+      dyn_cast_or_null<DICompositeType>(SP ? SP->getScope() : nullptr);
+  if (!Class)
+    return std::nullopt;
+  for (const DINode *Element : Class->getElements()) {
+    const auto *Field = dyn_cast_or_null<DIDerivedType>(Element);
+    if (Field && Field->getTag() == dwarf::DW_TAG_member &&
+        !Field->isStaticMember() && Field->getName() == Name)
+      return Field->getOffsetInBits() / CHAR_BIT;
+  }
+  return std::nullopt;
+}
+
+std::optional<NamedRead> planName(const ParameterRead &Read,
+                                  const AnalysedModule &Analysed) {
+  const Rule &Row = *Read.Row;
+  if (Row.Resolve.empty() || Read.Key.empty())
+    return std::nullopt;
+  auto *Call = dyn_cast_or_null<CallBase>(Analysed.original(Read.Call));
+  const Function *Callee = Call ? Call->getCalledFunction() : nullptr;
+  if (!Callee)
+    return std::nullopt;
+  NamedRead R{
+      Read.Key,  Call, objectOf(*Call, Row), 0, argument(*Call, Row, Row.Name),
+      Read.Field};
+  if (Row.Kind == Rule::Config) {
+    std::optional<uint64_t> Offset = offsetOf(*Callee, Row.Resolve);
+    if (!R.Handle || !Offset || R.Text.empty())
+      return std::nullopt;
+    R.HandleOffset = *Offset;
+    return R;
+  }
+  if (Row.Resolve == "global")
+    R.Handle = nullptr;
+  else if (!R.Handle)
+    return std::nullopt;
+  if (!R.Name || !R.Name->getType()->isPointerTy())
+    return std::nullopt;
+  return R;
+}
+
+/// Weak, so that a program also runs without the log library.
+static FunctionCallee logFunction(Module &M) {
+  LLVMContext &Ctx = M.getContext();
+  Type *Pointer = PointerType::getUnqual(Ctx);
+  auto *T = FunctionType::get(Type::getVoidTy(Ctx),
+                              {Pointer, Pointer, Pointer, Type::getInt1Ty(Ctx)},
+                              false);
+  FunctionCallee Callee = M.getOrInsertFunction(LogName, T);
+  if (auto *F = dyn_cast<Function>(Callee.getCallee());
+      F && F->isDeclaration()) {
+    F->setLinkage(GlobalValue::ExternalWeakLinkage);
+    F->addParamAttr(3, Attribute::ZExt);
+    F->setDoesNotThrow();
+  }
+  return Callee;
+}
+
+/// `if (log_read) log_read(...)`
+static Function *reportFunction(Module &M, FunctionCallee Log) {
+  LLVMContext &Ctx = M.getContext();
+  auto *F = Function::Create(Log.getFunctionType(),
+                             GlobalValue::InternalLinkage, "tpc.read", M);
+  F->setDoesNotThrow();
+  auto *Look = BasicBlock::Create(Ctx, "", F);
+  auto *Report = BasicBlock::Create(Ctx, "", F);
+  auto *Done = BasicBlock::Create(Ctx, "", F);
+  IRBuilder<> B(Look);
+  B.CreateCondBr(B.CreateIsNull(Log.getCallee()), Done, Report);
+  B.SetInsertPoint(Report);
+  SmallVector<Value *, 4> Arguments;
+  for (Argument &A : F->args())
+    Arguments.push_back(&A);
+  B.CreateCall(Log, Arguments)->addParamAttr(3, Attribute::ZExt);
+  B.CreateBr(Done);
+  B.SetInsertPoint(Done);
+  B.CreateRetVoid();
+  return F;
+}
+
+static Constant *textOf(Module &M, StringRef Text, const Twine &Name) {
+  Constant *Data = ConstantDataArray::getString(M.getContext(), Text);
+  auto *G = new GlobalVariable(M, Data->getType(), /*isConstant=*/true,
+                               GlobalValue::PrivateLinkage, Data, Name);
+  G->setUnnamedAddr(GlobalValue::UnnamedAddr::Global);
+  return G;
+}
+
+SmallVector<Instruction *, 0> insertNames(Module &M,
+                                          ArrayRef<NamedRead> Reads) {
+  SmallVector<Instruction *, 0> Inserted;
+  if (Reads.empty())
+    return Inserted;
+  Function *Report = reportFunction(M, logFunction(M));
+  for (const NamedRead &R : Reads) {
+    IRBuilder<> B(R.Before);
+    B.SetCurrentDebugLocation(R.Before->getDebugLoc());
+    Value *Handle = Constant::getNullValue(B.getPtrTy());
+    if (R.Handle) {
+      Handle = B.CreateConstGEP1_64(B.getInt8Ty(), R.Handle, R.HandleOffset);
+      if (auto *I = dyn_cast<Instruction>(Handle); I && I != R.Handle)
+        Inserted.push_back(I);
+    }
+    Value *Name = R.Name ? R.Name : textOf(M, R.Text, "tpc.name");
+    Inserted.push_back(
+        B.CreateCall(Report, {textOf(M, R.Key, "tpc.key"), Handle, Name,
+                              B.getInt1(!R.Name)}));
+  }
+  return Inserted;
+}
+
+} // namespace tpc

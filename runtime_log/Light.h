@@ -1,0 +1,41 @@
+//===- Light.h - The policy `light` ---------------------------------------===//
+//
+// The default. Each flop is reported, up to the caps. All evaluations of a site
+// are counted, and a sample of them is summarised, once in a period. Between
+// two samples the instrumented code only counts down (SiteWords.h), so a
+// comparison in a hot loop costs about a nanosecond.
+//
+// No thread waits for another: a thread that finds a site in use by another for
+// longer than a moment leaves its evaluation uninspected, and counts it.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_LIGHT_H
+#define TPC_LIGHT_H
+
+#include "Sink.h"
+#include "SiteWords.h"
+#include "Sites.h"
+#include "Threads.h"
+
+namespace tpc {
+
+/// Records one evaluation.
+void light(Thread &T, Site &S, const Report &R);
+
+/// Whether the evaluation needs only to be counted, and has been. For callers
+/// of log_one that do not look at SiteWords themselves.
+bool isPassedOver(const Site &S, bool Result);
+
+/// Begins the first period: what was counted before is forgotten.
+void beginLight();
+
+/// Ends a period: passes the summaries to \p To and begins a new period.
+/// Returns how many there were. With \p IsEnd, also counts what has no sample.
+uint64_t flushLight(Sink &To, bool IsEnd);
+
+/// In the child of a fork, where only the calling thread exists.
+void lightAfterFork();
+
+} // namespace tpc
+
+#endif // TPC_LIGHT_H

@@ -1,0 +1,68 @@
+//===- ReadNames.h - Full names of parameters -----------------------------===//
+//
+// Before a read of a parameter, instrumented code calls log_read, which
+// resolves the name as roscpp does and keeps it here. The helper thread gives
+// each name of each read to the sink once, and again from time to time to a
+// sink whose readers may come later.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_READNAMES_H
+#define TPC_READNAMES_H
+
+#include "Sink.h"
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace tpc {
+
+class ReadNames {
+public:
+  static constexpr size_t Most = 10'000;
+  static constexpr int64_t FirstAgainNs = 1'000'000'000;
+  static constexpr int64_t LastAgainNs = 32'000'000'000;
+
+  /// The names of this process. Never destroyed.
+  static ReadNames &all();
+
+  /// Keeps \p Name for the read \p Key, from any thread. Beyond Most names
+  /// nothing is kept, with one warning.
+  void add(const char *Key, const std::string &Name);
+
+  /// Gives \p To the names that it has not got; all of them if it is another
+  /// sink than before, and again after 1 s, 2 s and so on up to every 32 s.
+  void give(Sink &To, int64_t Now);
+
+  /// The next give() gives all names: the sink writes to a new file.
+  void startAgain();
+
+  /// Whether give() may have something to do.
+  bool any() const { return Any.load(std::memory_order_relaxed); }
+
+  /// Call before and after a fork.
+  void lock() { Lock.lock(); }
+  void unlock() { Lock.unlock(); }
+
+private:
+  std::mutex Lock; ///< for everything that follows
+  /// `KEY,NAME`. Its nodes stay where they are.
+  std::set<std::string, std::less<>> Known;
+  std::vector<const std::string *> InOrder;
+  const Sink *Given = nullptr;
+  size_t GivenCount = 0;
+  int64_t AllGivenAt = 0, AgainNs = FirstAgainNs;
+  bool IsFull = false;
+  std::atomic<bool> Any{false};
+};
+
+/// The full name of the parameter \p Name for the ros::NodeHandle \p Handle, or
+/// for the node if that is null; empty if there is none.
+std::string resolveName(const void *Handle, const std::string &Name);
+
+} // namespace tpc
+
+#endif // TPC_READNAMES_H

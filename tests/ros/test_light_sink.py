@@ -1,0 +1,109 @@
+"""The default: reports as few batches on /rosout, from a node on a real graph."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import time
+from collections import Counter
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+from test_sinks import THREAD, graph, key, made, nodes
+
+from pytpc.api.live_reports import Reports
+from pytpc.diagnosis.results.live import Seen
+from pytpc.ingest.ros1 import decode_log
+from pytpc.recording.summaries import Summary
+from pytpc.ros.ros1.graph import RosGraph
+from pytpc.ros.ros1.master import Master
+from pytpc.ros.ros1.subscriber import RawSubscriber
+
+__all__ = ["graph", "nodes"]
+ROSOUT = "/rosout"
+
+
+class Listener:
+    """What came on /rosout in batches."""
+
+    def __init__(self, graph: RosGraph) -> None:
+        self._subscriber = RawSubscriber(Master(graph.uri, "/listener"), "127.0.0.1", [ROSOUT])
+        self._reports = Reports()
+        self.items: list[Seen | Summary] = []
+        self.batches = self.bytes = 0
+
+    def listen(self, process: subprocess.Popen[bytes]) -> None:
+        end = time.monotonic() + 20
+        while process.poll() is None:
+            assert time.monotonic() < end
+            self._poll()
+        self._poll()
+        self._subscriber.close()
+        assert self._reports.malformed == 0
+
+    def _poll(self) -> None:
+        for source, data in self._subscriber.poll(0.05):
+            msg = decode_log(data).msg
+            self.batches += msg.startswith(b"threshold_batch:")
+            self.bytes += len(msg) if msg.startswith(b"threshold_") else 0
+            self.items += self._reports.read(source, data, time.monotonic())
+
+    @property
+    def counts(self) -> Counter[str]:
+        found: Counter[str] = Counter()
+        for item in self.items:
+            if isinstance(item, Summary):
+                found[item.key] += item.count
+        return found
+
+
+def run(graph: RosGraph, nodes: Path, *options: str, **env: str) -> tuple[Listener, int, str]:
+    """What came, how many reports were made, and the node's output."""
+    kept = {name: text for name, text in os.environ.items() if not name.startswith("TPC_")}
+    listener = Listener(graph)
+    command = [str(nodes / "reporter"), *options, "--stay=1.5"]
+    process = graph.start("reporter", command, env={**kept, **env})
+    listener.listen(process.popen)
+    return listener, made(process)["running"], process.log.read_text()
+
+
+# 20,000 evaluations a second of four sites: all are counted, and a few batches have them.
+def test_the_default_counts_everything_in_few_messages(graph, nodes):
+    listener, count, output = run(graph, nodes, "--rate=20000", "--seconds=3", "--threads=4")
+    assert count == 60_000
+    assert listener.counts == {key(THREAD + i): 15_000 for i in range(4)}
+    firsts = [item for item in listener.items if isinstance(item, Seen)]
+    assert sorted(item.key for item in firsts) == [key(THREAD + i) for i in range(4)]
+    assert listener.batches <= 8
+    assert listener.bytes < 10_000
+    assert "threshold" not in output
+
+
+# Each is a flop: ten of a second are sent with their time, and what is left out is counted.
+def test_flops_are_sent_up_to_the_cap_and_the_node_says_so_once(graph, nodes):
+    listener, count, output = run(graph, nodes, "--rate=100", "--seconds=3", "--flops=1")
+    assert listener.counts == {key(THREAD): count}
+    flops = [item for item in listener.items if isinstance(item, Seen)]
+    assert 25 <= len(flops) <= 50
+    assert all(a.result != b.result for a, b in pairwise(flops))
+    assert sum(item.flops for item in listener.items if isinstance(item, Summary)) == count - 1
+    assert output.count("changes more often than 10 times a second") == 1
+
+
+def test_the_thesis_lines_by_name(graph, nodes):
+    settings = {"TPC_SINK": "rosout", "TPC_POLICY": "every"}
+    listener, count, _ = run(graph, nodes, "--rate=200", "--wait=1", **settings)
+    assert listener.batches == 0
+    assert len(listener.items) == count == 200
+
+
+@pytest.mark.parametrize("sink", ["topic", "file"])
+def test_a_named_sink_gets_every_report(graph, nodes, sink, tmp_path):
+    kept = {"TPC_SINK": sink, "TPC_FOLDER": str(tmp_path / "files")}
+    listener, count, _ = run(graph, nodes, "--rate=200", **kept)
+    assert count == 200
+    assert not listener.items
+    if sink == "file":
+        (path,) = (tmp_path / "files").glob("*.tpc")
+        assert path.stat().st_size > 200 * 32
