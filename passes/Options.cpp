@@ -77,19 +77,20 @@ static cl::opt<Failure>
                          cl::desc("Fail when the analysis ends (for tests)"),
                          failureKinds());
 
-/// The linker's `-o`, taken from the command line of this process. The module
-/// of a link is always called ld-temp.o, and the linker passes a plugin no
-/// other name.
-static std::string outputOfThisProcess() {
+/// The linker's `-o` and `-shared`, taken from the command line of this
+/// process. The module of a link is always called ld-temp.o, and the linker
+/// tells a plugin nothing else.
+static void readOwnCommandLine(Options &O) {
   auto Buffer = MemoryBuffer::getFileAsStream("/proc/self/cmdline");
   if (!Buffer)
-    return "";
+    return;
   SmallVector<StringRef, 64> Words;
   (*Buffer)->getBuffer().split(Words, '\0');
-  for (size_t I = 0; I + 1 < Words.size(); ++I)
-    if (Words[I] == "-o")
-      return Words[I + 1].str();
-  return "";
+  O.SharedLibrary =
+      is_contained(Words, "-shared") || is_contained(Words, "--shared");
+  const auto *Output = find(Words, "-o");
+  if (O.LinkUnit.empty() && Output != Words.end() && Output + 1 != Words.end())
+    O.LinkUnit = sys::path::filename(Output[1]).str();
 }
 
 AnalysisKey OptionsAnalysis::Key;
@@ -99,8 +100,7 @@ Options OptionsAnalysis::run(Module &, ModuleAnalysisManager &) {
     return *Known;
   Options O;
   O.LinkUnit = LinkUnitOpt;
-  if (O.LinkUnit.empty())
-    O.LinkUnit = sys::path::filename(outputOfThisProcess()).str();
+  readOwnCommandLine(O);
   if (O.LinkUnit.empty())
     O.LinkUnit = "unnamed";
   O.Package = PackageOpt;

@@ -19,10 +19,11 @@ namespace tpc {
 /// The options of one link.
 struct Options {
   std::string LinkUnit; ///< name of the target; otherwise the file name of `-o`
-  std::string Package;  ///< name of the CMake project
-  std::string SourceRoot; ///< folder that reported files are relative to
-  std::string StaticInfo; ///< where the JSON is written; empty: nowhere
-  std::string Profile;    ///< profile of the rules
+  bool SharedLibrary = false; ///< the linker makes one
+  std::string Package;        ///< name of the CMake project
+  std::string SourceRoot;     ///< folder that reported files are relative to
+  std::string StaticInfo;     ///< where the JSON is written; empty: nowhere
+  std::string Profile;        ///< profile of the rules
   std::vector<std::string> RuleFiles; ///< the user's own tables
   std::vector<std::string> Excluded;  ///< folders that are not the user's
   bool Analyse = true;                ///< if false, the unit is only optimised

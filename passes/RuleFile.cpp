@@ -39,6 +39,11 @@ private:
   Error row(const json::Value &V, const Section &In, StringRef Place,
             RuleFile &Out);
   Error containers(const json::Value &V, StringRef Place, RuleFile &Out);
+  Error overriding(const json::Value &V, StringRef Place, RuleFile &Out);
+  bool belongs(ArrayRef<std::string> Profiles) const {
+    // What has no profiles belongs to every profile.
+    return Profiles.empty() || is_contained(Profiles, Profile);
+  }
   Error field(StringRef Key, const json::Value &V, StringRef Place, Rule &R);
   Error part(const json::Value &V, StringRef Place, Rule &R);
   Error number(const json::Value &V, StringRef Place,
@@ -228,8 +233,7 @@ Error Reader::row(const json::Value &V, const Section &In, StringRef Place,
   for (StringRef Key : In.Required)
     if (!Row->get(Key))
       return wrong(Place, "has no \"" + Key + "\"");
-  // A row without profiles belongs to every profile.
-  if (Profiles.empty() || is_contained(Profiles, Profile))
+  if (belongs(Profiles))
     Out.Rows.push_back(std::move(R));
   return Error::success();
 }
@@ -247,6 +251,23 @@ Error Reader::containers(const json::Value &V, StringRef Place, RuleFile &Out) {
                   Key == "classes" ? Out.ContainerClasses : Out.ReadingMethods))
       return E;
   }
+  return Error::success();
+}
+
+Error Reader::overriding(const json::Value &V, StringRef Place, RuleFile &Out) {
+  const json::Object *Keys = V.getAsObject();
+  if (!Keys)
+    return wrong(Place, "must be an object");
+  std::vector<std::string> Profiles;
+  for (StringRef Key : keysOf(*Keys)) {
+    std::string At = (Place + "/" + Key).str();
+    if (Key != "except" && Key != "profiles")
+      return wrong(At, "is not a key of \"overriding\"");
+    if (Error E = texts(*Keys->get(Key), At,
+                        Key == "except" ? Out.KeptOverrides : Profiles))
+      return E;
+  }
+  Out.ShowsOverrides = belongs(Profiles);
   return Error::success();
 }
 
@@ -271,6 +292,9 @@ Error Reader::file(const json::Value &Value, RuleFile &Out) {
         return E;
     } else if (Key == "containers") {
       if (Error E = containers(V, Place, Out))
+        return E;
+    } else if (Key == "overriding") {
+      if (Error E = overriding(V, Place, Out))
         return E;
     } else if (none_of(Sections,
                        [&](const Section &S) { return S.Name == Key; })) {

@@ -16,6 +16,10 @@ struct RuleFile {
   std::vector<std::string> Opaque, Kept, Counting,
       Silent; ///< prefixes of names
   std::vector<std::string> ContainerClasses, ReadingMethods, Transparent;
+  /// Functions that override one of another library expose something, but not
+  /// those of classes that begin with one of these names.
+  bool ShowsOverrides = false;
+  std::vector<std::string> KeptOverrides;
 };
 
 /// The rows of \p Text that belong to \p Profile. \p Origin is the file name

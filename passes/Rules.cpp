@@ -7,6 +7,7 @@
 #include "support/Names.h"
 
 #include "llvm/ADT/SetVector.h"
+#include "llvm/Demangle/Demangle.h"
 #include "llvm/IR/DebugInfoMetadata.h"
 #include "llvm/IR/Module.h"
 #include "llvm/Support/MemoryBuffer.h"
@@ -50,6 +51,8 @@ Expected<Rules> Rules::load(const Options &Opts) {
     append_range(R.KeptPrefixes, File->Kept);
     append_range(R.CountingPrefixes, File->Counting);
     append_range(R.SilentPrefixes, File->Silent);
+    append_range(R.KeptOverrides, File->KeptOverrides);
+    R.ShowsOverrides |= File->ShowsOverrides;
     R.ContainerClasses.insert(File->ContainerClasses.begin(),
                               File->ContainerClasses.end());
     R.Transparent.insert(File->Transparent.begin(), File->Transparent.end());
@@ -86,6 +89,13 @@ bool Rules::isCounting(StringRef Name) const {
 
 bool Rules::isSilent(StringRef Name) const {
   return beginsWithOneOf(Name, SilentPrefixes);
+}
+
+bool Rules::keepsOverrides(StringRef Class) const {
+  std::string Text = demangle(("_ZTI" + Class).str());
+  StringRef Name = Text;
+  Name.consume_front("typeinfo for ");
+  return beginsWithOneOf(Name, KeptOverrides);
 }
 
 RuleTables RuleTableAnalysis::run(Module &M, ModuleAnalysisManager &AM) {

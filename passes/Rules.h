@@ -125,12 +125,19 @@ public:
   /// library that it belongs to, not about the robot.
   bool isSilent(llvm::StringRef Name) const;
 
+  /// True if functions that override a virtual function of another library
+  /// expose what they return and write.
+  bool showsOverrides() const { return ShowsOverrides; }
+  /// True if those of the class with the mangled name \p Class do not.
+  bool keepsOverrides(llvm::StringRef Class) const;
+
 private:
   const Rule *rowOf(const llvm::Function &F, llvm::StringRef Name) const;
 
   llvm::StringMap<std::vector<Rule>> ByName;
   std::vector<std::string> OpaquePrefixes, KeptPrefixes, CountingPrefixes,
-      SilentPrefixes;
+      SilentPrefixes, KeptOverrides;
+  bool ShowsOverrides = false;
   llvm::StringSet<> ContainerClasses, ReadingMethods, Transparent;
   /// Cached by mangled name, so that each name is demangled once.
   mutable llvm::StringMap<Match> Known;
@@ -179,6 +186,10 @@ public:
   }
   /// True if the class \p Name is in one of the opaque namespaces.
   bool isOpaque(llvm::StringRef Name) const { return Tables->isOpaque(Name); }
+  bool showsOverrides() const { return Tables->showsOverrides(); }
+  bool keepsOverrides(llvm::StringRef Class) const {
+    return Tables->keepsOverrides(Class);
+  }
   /// See Rules::isTransparent; works for inlined functions too.
   bool isTransparent(const llvm::DISubprogram &F) const {
     return inlined(F).Transparent;

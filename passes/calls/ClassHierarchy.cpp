@@ -48,21 +48,29 @@ unsigned ClassHierarchy::numberOf(StringRef Name) {
   return It->second;
 }
 
+/// The number in an entry of a vtable, which is null or a number as pointer.
+static int64_t asNumber(const Constant *Entry) {
+  const auto *Cast = dyn_cast<ConstantExpr>(Entry);
+  const auto *Number = Cast && Cast->getOpcode() == Instruction::IntToPtr
+                           ? dyn_cast<ConstantInt>(Cast->getOperand(0))
+                           : nullptr;
+  return Number ? Number->getSExtValue() : 0;
+}
+
 /// `_ZTV4Base`: for each address point, the offset to the top, the type
 /// information and the functions.
 void ClassHierarchy::addTable(const GlobalVariable &Variable) {
-  const auto *Group = dyn_cast<ConstantStruct>(Variable.getInitializer());
-  if (!Group)
+  const auto *Parts = dyn_cast<ConstantStruct>(Variable.getInitializer());
+  if (!Parts)
     return;
-  Table Found;
+  SmallVector<Group, 1> Found;
   // If several files have a class of the same name, the linker renames the
   // tables. Their type information still says which class each belongs to.
   StringRef Name = Variable.getName();
-  for (const Use &U : Group->operands()) {
+  for (const Use &U : Parts->operands()) {
     const auto *Entries = dyn_cast<ConstantArray>(U.get());
     if (!Entries)
       continue;
-    Found.emplace_back();
     // Before the functions stand offsets to virtual bases, the offset to the
     // top and the type information, which is the last global that is not a
     // function.
@@ -74,12 +82,16 @@ void ClassHierarchy::addTable(const GlobalVariable &Variable) {
         Name = Info->getName();
         Begin = N + 1;
       }
+    int64_t Top = Entries->getNumOperands() < 2
+                      ? 0
+                      : asNumber(Entries->getOperand(Begin - 2));
+    Group &G = Found.emplace_back(Group{-Top, {}});
     for (unsigned N = Begin; N < Entries->getNumOperands(); ++N)
-      Found.back().push_back(
+      G.Functions.push_back(
           dyn_cast<Function>(Entries->getOperand(N)->stripPointerCasts()));
   }
   unsigned Number = numberOf(Name.drop_front(4));
-  Classes[Number].Functions = std::move(Found);
+  Classes[Number].Table = std::move(Found);
   addObjects(Variable, Number);
 }
 
@@ -147,18 +159,21 @@ void ClassHierarchy::addBases(const GlobalVariable &TypeInfo) {
   if (!Info || Info->getNumOperands() < 3)
     return;
   unsigned Own = numberOf(TypeInfo.getName().drop_front(4));
-  auto Add = [&](const Constant *Base, bool AtBeginning) {
+  auto Add = [&](const Constant *Base, int64_t Offset) {
     const auto *Variable = dyn_cast<GlobalVariable>(Base->stripPointerCasts());
     if (Variable && Variable->getName().starts_with("_ZTI")) {
       unsigned Number = numberOf(Variable->getName().drop_front(4));
-      Classes[Number].Derived.push_back({Own, AtBeginning});
+      Classes[Number].Derived.push_back({Own, Offset});
+      Classes[Own].Bases.push_back({Number, Offset});
     }
   };
   if (Info->getNumOperands() == 3)
-    return Add(Info->getOperand(2), true);
+    return Add(Info->getOperand(2), 0);
   for (unsigned N = 4; N + 1 < Info->getNumOperands(); N += 2) {
     const auto *Where = dyn_cast<ConstantInt>(Info->getOperand(N + 1));
-    Add(Info->getOperand(N), Where && (Where->getSExtValue() >> 8) == 0);
+    // Bit 0 says that the base is virtual.
+    bool IsFixed = Where && !(Where->getZExtValue() & 1);
+    Add(Info->getOperand(N), IsFixed ? Where->getSExtValue() >> 8 : Virtual);
   }
 }
 
@@ -176,16 +191,41 @@ void ClassHierarchy::collect(unsigned Number, bool AtBeginning, unsigned Slot,
                              const CallBase &Call,
                              SmallVectorImpl<Function *> &Out) {
   const Class &C = Classes[Number];
-  for (const auto &[N, Functions] : enumerate(C.Functions)) {
+  for (const auto &[N, G] : enumerate(C.Table)) {
     // A base that is not at the beginning has its table further on.
-    if (AtBeginning != (N == 0) || Slot >= Functions.size())
+    if (AtBeginning != (N == 0) || Slot >= G.Functions.size())
       continue;
-    Function *F = Functions[Slot];
+    Function *F = G.Functions[Slot];
     if (F && fits(Call, *F) && !is_contained(Out, F))
       Out.push_back(F);
   }
-  for (const auto &[Derived, First] : C.Derived)
-    collect(Derived, AtBeginning && First, Slot, Call, Out);
+  for (const Relative &D : C.Derived)
+    collect(D.Class, AtBeginning && D.Offset == 0, Slot, Call, Out);
+}
+
+/// Adds the bases of \p C that begin \p Offset bytes into it.
+void ClassHierarchy::addBasesAt(const Class &C, int64_t Offset,
+                                SmallVectorImpl<StringRef> &Out) const {
+  for (const Relative &B : C.Bases) {
+    if (B.Offset == Virtual || B.Offset > Offset)
+      continue;
+    const Class &Base = Classes[B.Class];
+    if (B.Offset == Offset && !is_contained(Out, Base.Name))
+      Out.push_back(Base.Name);
+    addBasesAt(Base, Offset - B.Offset, Out);
+  }
+}
+
+void ClassHierarchy::forEachFunction(
+    function_ref<void(const VirtualFunction &)> Fn) const {
+  for (const Class &C : Classes)
+    for (const Group &G : C.Table) {
+      SmallVector<StringRef, 4> Bases;
+      addBasesAt(C, G.Offset, Bases);
+      for (const auto &[Slot, F] : enumerate(G.Functions))
+        if (F)
+          Fn({C.Name, F, static_cast<unsigned>(Slot), Bases});
+    }
 }
 
 void ClassHierarchy::addFunctions(
@@ -197,12 +237,12 @@ void ClassHierarchy::addFunctions(
   Work.insert(It->second);
   for (unsigned N = 0; N < Work.size(); ++N) {
     const Class &C = Classes[Work[N]];
-    for (const auto &Functions : C.Functions)
-      for (const Function *F : Functions)
+    for (const Group &G : C.Table)
+      for (const Function *F : G.Functions)
         if (F)
           Out.insert(F);
-    for (const auto &[Derived, First] : C.Derived)
-      Work.insert(Derived);
+    for (const Relative &D : C.Derived)
+      Work.insert(D.Class);
   }
 }
 

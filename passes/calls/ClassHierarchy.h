@@ -13,6 +13,7 @@
 
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/MapVector.h"
+#include "llvm/ADT/STLFunctionalExtras.h"
 #include "llvm/ADT/SetVector.h"
 #include "llvm/ADT/SmallVector.h"
 #include "llvm/ADT/StringMap.h"
@@ -22,6 +23,15 @@
 #include <optional>
 
 namespace tpc {
+
+/// A function in the vtable of a class, and the base classes through which a
+/// call of this slot enters it. Classes have their mangled names.
+struct VirtualFunction {
+  llvm::StringRef Class;
+  llvm::Function *F;
+  unsigned Slot;
+  llvm::ArrayRef<llvm::StringRef> Bases;
+};
 
 /// A call through the vtable of an object.
 struct VirtualCall {
@@ -42,6 +52,10 @@ public:
   llvm::SmallVector<llvm::Function *, 4> targets(const llvm::CallBase &Call,
                                                  const VirtualCall &How);
 
+  /// Calls \p Fn for each function in a vtable, in the order of the module.
+  void
+  forEachFunction(llvm::function_ref<void(const VirtualFunction &)> Fn) const;
+
   /// Adds the functions in the vtables of the class with the mangled name
   /// \p Name and of all derived classes.
   void addFunctions(llvm::StringRef Name,
@@ -54,13 +68,21 @@ public:
       llvm::SmallSetVector<const llvm::Function *, 4> &Out) const;
 
 private:
-  /// A vtable: the functions behind each of its address points.
-  using Table = llvm::SmallVector<llvm::SmallVector<llvm::Function *, 8>, 1>;
+  /// The functions behind an address point of a vtable.
+  struct Group {
+    int64_t Offset; ///< of the part of the object that has this table; bytes
+    llvm::SmallVector<llvm::Function *, 8> Functions;
+  };
+  /// Another class, and where the base of the two is in the derived one.
+  struct Relative {
+    unsigned Class;
+    int64_t Offset; ///< bytes; Virtual if only the object knows
+  };
+  static constexpr int64_t Virtual = -1;
   struct Class {
     llvm::StringRef Name; ///< mangled
-    Table Functions;
-    /// Derived classes, and whether this class is at the beginning of each.
-    llvm::SmallVector<std::pair<unsigned, bool>, 2> Derived;
+    llvm::SmallVector<Group, 1> Table;
+    llvm::SmallVector<Relative, 2> Derived, Bases;
   };
 
   unsigned numberOf(llvm::StringRef Name);
@@ -68,6 +90,8 @@ private:
   void addTable(const llvm::GlobalVariable &Table);
   void addObjects(const llvm::GlobalVariable &Table, unsigned Class);
   void addBases(const llvm::GlobalVariable &TypeInfo);
+  void addBasesAt(const Class &C, int64_t Offset,
+                  llvm::SmallVectorImpl<llvm::StringRef> &Out) const;
   void collect(unsigned Class, bool AtBeginning, unsigned Slot,
                const llvm::CallBase &Call,
                llvm::SmallVectorImpl<llvm::Function *> &Out);

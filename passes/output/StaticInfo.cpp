@@ -122,8 +122,8 @@ json::Array Describer::parameters() const {
 json::Array Describer::exposing() const {
   json::Array List;
   for (const ExposingStatement &E : Exposing) {
-    json::Object O = placed(*E.Call);
-    O["api"] = E.Row->Function;
+    json::Object O = placed(*E.At);
+    O["api"] = E.Api;
     O["topic"] = textOrNull(E.Topic);
     List.push_back(std::move(O));
   }
@@ -200,11 +200,11 @@ json::Object Describer::comparison(const SourcePlace &P) {
   O["source_code"] = Lines.line(pathOf(C.Where), C.Where->getLine());
   O["other_thresholds"] = C.OtherThresholds;
   O["param_reads"] = std::move(ReadPlaces);
-  O["publishes"] = json::Array{where(*Nearest.Call)};
+  O["publishes"] = json::Array{where(*Nearest.At)};
   O["transform"] = describeTransform(C.How);
   O["default"] = Read ? Read->Default : nullptr;
   O["read_at"] = Read ? where(*Read->Call) : nullptr;
-  O["exposed_at"] = where(*Nearest.Call);
+  O["exposed_at"] = where(*Nearest.At);
   if (Read)
     O["path"] = Explain.path(C);
   return O;

@@ -13,7 +13,8 @@ Wording::Wording(const LocationTypes &Types, PointsTo &Pointers,
                  const ExternCallFinder::Result &Exposing, const Options &Opts)
     : Pointers(Pointers), Sources(Opts), Names(Types) {
   for (const ExposingStatement &E : Exposing)
-    this->Exposing[E.Call] = &E;
+    if (!E.isGivenBack())
+      this->Exposing[E.At] = &E;
 }
 
 const DILocation *Wording::userPlace(const Instruction &I) {
@@ -66,7 +67,9 @@ std::string Wording::value(const Value *V) const {
 }
 
 std::string Wording::exposed(const ExposingStatement &E) const {
-  StringRef Name = unscoped(E.Row->Function);
+  if (E.isGivenBack())
+    return "given back by " + E.Topic;
+  StringRef Name = unscoped(E.Api);
   std::string Text = Name == "publish" ? "published"
                      : Name == "call"  ? "service called"
                                        : (Name + "()").str();
@@ -75,7 +78,7 @@ std::string Wording::exposed(const ExposingStatement &E) const {
 
 std::string Wording::guarded(const Instruction &I) {
   if (const ExposingStatement *E = Exposing.lookup(&I)) {
-    std::string Text = (unscoped(E->Row->Function) + "()").str();
+    std::string Text = (unscoped(E->Api) + "()").str();
     return E->Topic.empty() ? Text : Text + " on " + E->Topic;
   }
   if (const auto *Call = dyn_cast<CallBase>(&I))

@@ -97,7 +97,8 @@ private:
   void enterTouched(CallBase &Call);
   void enterVirtualCall(const CallBase &Call);
   void enterThrowers(CallBase &Call);
-  void enterDerived(const Value *Pointer);
+  void enterDerived(const Value *Pointer, bool IntoCallees = false);
+  void enterContents(const Value *Pointer, Instruction &At, bool IsOfCaller);
   void enterPublisher(const Value *Object);
   void enterReachable(CallBase &Call);
 
@@ -299,7 +300,9 @@ void Slicer::enterThrowers(CallBase &Call) {
       enter(Inner, isThrow(*Inner) ? Runs : Throwing, Why::Throws);
 }
 
-void Slicer::enterDerived(const Value *Pointer) {
+/// What is written through \p Pointer and what is computed from it matters,
+/// with \p IntoCallees also in the functions that get it.
+void Slicer::enterDerived(const Value *Pointer, bool IntoCallees) {
   if (!SeenPointers.insert(Pointer).second)
     return;
   for (const Use &U : Pointer->uses()) {
@@ -312,12 +315,19 @@ void Slicer::enterDerived(const Value *Pointer) {
                       !isa<AllocaInst>(getUnderlyingObject(Pointer));
     const auto *Call = dyn_cast<CallBase>(I);
     if (isa<GetElementPtrInst>(I))
-      enterDerived(I);
+      enterDerived(I, IntoCallees);
     else if (IsStoredTo || isa<MemTransferInst>(I))
       enter(I, Gives, Why::Writes);
     else if (Call && !isa<IntrinsicInst>(I) && !Settled.contains(I) &&
-             !endsLife(*Call))
+             !endsLife(*Call)) {
       enter(I, Touches, Why::Writes);
+      for (Function *Callee : IntoCallees && Call->isArgOperand(&U)
+                                  ? Calls.callees(*Call)
+                                  : SmallVector<Function *, 1>())
+        if (Sources.has(*Callee) &&
+            Call->getArgOperandNo(&U) < Callee->arg_size())
+          enterDerived(Callee->getArg(Call->getArgOperandNo(&U)), true);
+    }
   }
 }
 
@@ -352,6 +362,25 @@ void Slicer::enterPublisher(const Value *Object) {
   }
 }
 
+/// The contents of the object at \p Pointer matter where \p At shows them. The
+/// writes into an object that is the caller's are also found in the functions
+/// that get a pointer to it: nothing else says which object it is.
+void Slicer::enterContents(const Value *Pointer, Instruction &At,
+                           bool IsOfCaller) {
+  for (const Location &L : Pointers.resolve(Pointer, false)) {
+    for (Instruction *Write : Writes.writesInto(L, At, Pointer))
+      enter(Write,
+            isa<CallBase>(Write) && !isa<IntrinsicInst>(Write) ? Touches
+                                                               : Gives,
+            Why::Writes);
+    // The other writes come too late, or are overwritten.
+    for (Instruction *Write : Accesses.writesInto(L))
+      Settled.insert(Write);
+  }
+  enterDerived(Pointer, IsOfCaller);
+  Settled.clear();
+}
+
 /// Everything that an exposing statement shows: the contents of its arguments.
 void Slicer::enterReachable(CallBase &Call) {
   const Rule *Row = Rules.match(Call);
@@ -362,20 +391,8 @@ void Slicer::enterReachable(CallBase &Call) {
       continue;
     }
     enterValue(Arg);
-    if (!Arg->getType()->isPointerTy())
-      continue;
-    for (const Location &L : Pointers.resolve(Arg, false)) {
-      for (Instruction *Write : Writes.writesInto(L, Call, Arg))
-        enter(Write,
-              isa<CallBase>(Write) && !isa<IntrinsicInst>(Write) ? Touches
-                                                                 : Gives,
-              Why::Writes);
-      // The other writes come too late, or are overwritten.
-      for (Instruction *Write : Accesses.writesInto(L))
-        Settled.insert(Write);
-    }
-    enterDerived(Arg);
-    Settled.clear();
+    if (Arg->getType()->isPointerTy())
+      enterContents(Arg, Call, /*IsOfCaller=*/false);
   }
 }
 
@@ -431,14 +448,23 @@ void Slicer::process(const Item &It) {
     enterTouched(*cast<CallBase>(It.I));
   if (It.Reasons & Throwing)
     enterThrowers(*cast<CallBase>(It.I));
-  if (It.Reasons & Exposes)
-    enterReachable(*cast<CallBase>(It.I));
+  if (It.Reasons & Exposes) {
+    if (auto *Call = dyn_cast<CallBase>(It.I))
+      enterReachable(*Call);
+    else
+      enterContents(Exposing[It.Exposing].Written, *It.I, /*IsOfCaller=*/true);
+  }
 }
 
 SliceResult Slicer::run() {
   for (const auto &[N, E] : enumerate(Exposing)) {
     Current = N;
-    enter(E.Call, Exposes, Why::Exposes);
+    // Who calls an overriding function decides nothing about it.
+    if (E.isGivenBack())
+      Next.push_back({E.At, E.Written ? Exposes : Gives, Current,
+                      addStep(E.At, Why::Exposes)});
+    else
+      enter(E.At, Exposes, Why::Exposes);
   }
   for (; !Next.empty(); ++Round) {
     SmallVector<Item, 0> Items = std::move(Next);
@@ -468,8 +494,8 @@ PreservedAnalyses BackwardPropagatePrinter::run(Module &M,
     if (std::optional<SliceEntry> E = R.lookup(P))
       OS << "  distance " << E->Distance << " in "
          << P->getFunction()->getName() << place(*P) << " before "
-         << Exposing[E->Exposing].Row->Function
-         << place(*Exposing[E->Exposing].Call) << '\n';
+         << Exposing[E->Exposing].Api << place(*Exposing[E->Exposing].At)
+         << '\n';
   return PreservedAnalyses::all();
 }
 

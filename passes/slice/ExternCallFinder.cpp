@@ -2,7 +2,10 @@
 #include "slice/ExternCallFinder.h"
 
 #include "memory/PointsTo.h"
+#include "memory/Variables.h"
 #include "params/Texts.h"
+#include "slice/Overriding.h"
+#include "support/Names.h"
 #include "support/Print.h"
 
 #include "llvm/IR/DebugInfoMetadata.h"
@@ -66,6 +69,27 @@ static std::string topicOf(const Value *Object, ArrayRef<NamedObject> Named,
   return Topic;
 }
 
+/// Adds what \p F, which overrides a function of another library, gives back.
+static void addGivenBack(Function &F, ExternCallFinder::Result &Out) {
+  std::string Name = qualifiedName(F.getName());
+  auto Add = [&](ReturnInst &At, const Argument *Arg) {
+    std::string What =
+        Arg && !Arg->hasStructRetAttr() ? localName(*Arg, F) : "";
+    std::string Topic =
+        (unscoped(Name) + " -> " + (What.empty() ? "result" : What)).str();
+    Out.push_back({&At, Name, std::move(Topic), Arg});
+  };
+  for (BasicBlock &BB : F) {
+    auto *Return = dyn_cast<ReturnInst>(BB.getTerminator());
+    if (!Return)
+      continue;
+    if (Return->getReturnValue())
+      Add(*Return, nullptr);
+    for (const Argument *Arg : writtenArguments(F))
+      Add(*Return, Arg);
+  }
+}
+
 ExternCallFinder::Result ExternCallFinder::run(Module &M,
                                                ModuleAnalysisManager &AM) {
   const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
@@ -83,8 +107,13 @@ ExternCallFinder::Result ExternCallFinder::run(Module &M,
     std::string Topic = Row.Name
                             ? Known.nameOf(Call, Row)
                             : topicOf(objectOf(Call, Row), Named, Pointers);
-    R.push_back({&Call, &Row, isDynamic(Topic) ? "" : std::move(Topic)});
+    R.push_back(
+        {&Call, Row.Function, isDynamic(Topic) ? "" : std::move(Topic)});
   });
+  for (Function *F :
+       overridingFunctions(M, AM.getResult<SimpleCallGraph>(M), Rules,
+                           AM.getResult<OptionsAnalysis>(M)))
+    addGivenBack(*F, R);
   return R;
 }
 
@@ -93,8 +122,8 @@ PreservedAnalyses ExternCallFinderPrinter::run(Module &M,
   const auto &R = AM.getResult<ExternCallFinder>(M);
   OS << "exposing statements of " << M.getName() << ": " << R.size() << '\n';
   for (const ExposingStatement &E : R)
-    OS << "  " << E.Row->Function << " topic '" << E.Topic << "' in "
-       << E.Call->getFunction()->getName() << place(*E.Call) << '\n';
+    OS << "  " << E.Api << " topic '" << E.Topic << "' in "
+       << E.At->getFunction()->getName() << place(*E.At) << '\n';
   return PreservedAnalyses::all();
 }
 

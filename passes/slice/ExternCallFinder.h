@@ -1,7 +1,9 @@
 //===- ExternCallFinder.h - The exposing statements -----------------------===//
 //
 // Thesis A.8: the calls that make the internal state of a node visible. The
-// rules list them; the topic is found if a constant names it.
+// rules list them; the topic is found if a constant names it. Beyond the
+// thesis, the results and arguments of functions that override those of another
+// library (see Overriding.h).
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_EXTERNCALLFINDER_H
@@ -10,13 +12,20 @@
 #include "Rules.h"
 
 #include "llvm/ADT/SmallVector.h"
+#include "llvm/IR/Instructions.h"
 
 namespace tpc {
 
 struct ExposingStatement {
-  llvm::CallBase *Call;
-  const Rule *Row;
+  /// The call; for an overriding function, a return.
+  llvm::Instruction *At;
+  std::string Api;   ///< the function, with scopes
   std::string Topic; ///< empty if no constant names it
+  /// What an overriding function writes; null if it is the result.
+  const llvm::Argument *Written = nullptr;
+
+  /// True if what leaves the unit is what an overriding function gives back.
+  bool isGivenBack() const { return llvm::isa<llvm::ReturnInst>(At); }
 };
 
 class ExternCallFinder : public llvm::AnalysisInfoMixin<ExternCallFinder> {

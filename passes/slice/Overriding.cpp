@@ -1,0 +1,185 @@
+//===- Overriding.cpp -----------------------------------------------------===//
+#include "slice/Overriding.h"
+
+#include "calls/ClassHierarchy.h"
+#include "support/Names.h"
+
+#include "llvm/BinaryFormat/Dwarf.h"
+#include "llvm/Demangle/Demangle.h"
+#include "llvm/IR/IntrinsicInst.h"
+#include "llvm/Support/FileSystem.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+namespace {
+
+/// Finds the package of a source file: the nearest folder with a package.xml.
+class Packages {
+public:
+  /// Empty if \p Path is in no package.
+  std::string of(StringRef Path) {
+    StringRef Folder = sys::path::parent_path(Path);
+    if (Folder.empty() || Folder == Path)
+      return "";
+    if (auto It = Known.find(Folder); It != Known.end())
+      return It->second;
+    SmallString<256> Manifest(Folder);
+    sys::path::append(Manifest, "package.xml");
+    std::string Found = sys::fs::exists(Manifest) ? Folder.str() : of(Folder);
+    return Known[Folder] = Found;
+  }
+
+private:
+  StringMap<std::string> Known;
+};
+
+class Finder {
+public:
+  Finder(const Module &M, const CallGraphResult &Calls,
+         const RuleMatches &Rules, const Options &Opts)
+      : M(M), Calls(Calls), Rules(Rules), Opts(Opts), Sources(Opts) {}
+
+  /// The function that \p V shows, if it overrides one of another library; null
+  /// otherwise.
+  Function *overriding(const VirtualFunction &V);
+
+private:
+  bool overrides(const Function &F, unsigned Slot, StringRef Base);
+  bool isElsewhere(const DICompositeType &Base, const Function &F);
+  bool isCalledThroughClass(const Function &F) const;
+
+  const Module &M;
+  const CallGraphResult &Calls;
+  const RuleMatches &Rules;
+  const Options &Opts;
+  UserSources Sources;
+  Packages Folders;
+};
+
+} // namespace
+
+/// The function that the thunk \p F adjusts `this` for; \p F if it is none.
+static Function *behindThunk(Function *F) {
+  if (!F->getSubprogram() || !F->getSubprogram()->isThunk())
+    return F;
+  for (Instruction &I : instructions(F))
+    if (auto *Call = dyn_cast<CallBase>(&I); Call && !isa<IntrinsicInst>(I))
+      return Call->getCalledFunction();
+  return nullptr;
+}
+
+static const DICompositeType *baseClass(const DINode *Element) {
+  const auto *Derived = dyn_cast_or_null<DIDerivedType>(Element);
+  return Derived && Derived->getTag() == dwarf::DW_TAG_inheritance
+             ? dyn_cast_or_null<DICompositeType>(
+                   DebugTypes::plain(Derived->getBaseType()))
+             : nullptr;
+}
+
+/// The base of \p Class with the mangled name \p Name; null if the debug
+/// information has none.
+static const DICompositeType *findBase(const DICompositeType &Class,
+                                       StringRef Name) {
+  for (const DINode *N : Class.getElements())
+    if (const DICompositeType *Base = baseClass(N)) {
+      if (StringRef(DebugTypes::identifierOf(*Base)).drop_front(4) == Name)
+        return Base;
+      if (const DICompositeType *Further = findBase(*Base, Name))
+        return Further;
+    }
+  return nullptr;
+}
+
+/// True if \p Class itself declares a virtual function in \p Slot; none if its
+/// members are not known.
+static std::optional<bool> declares(const DICompositeType *Class,
+                                    unsigned Slot) {
+  if (!Class || Class->isForwardDecl())
+    return std::nullopt;
+  return any_of(Class->getElements(), [&](const DINode *N) {
+    const auto *Method = dyn_cast_or_null<DISubprogram>(N);
+    return Method && Method->getVirtuality() &&
+           Method->getVirtualIndex() == Slot;
+  });
+}
+
+bool Finder::isCalledThroughClass(const Function &F) const {
+  return any_of(Calls.callers(&F), [](const CallBase *Call) {
+    return ClassHierarchy::match(*Call).has_value();
+  });
+}
+
+/// True if the header of \p Base belongs to somebody else than \p F.
+bool Finder::isElsewhere(const DICompositeType &Base, const Function &F) {
+  std::string Header = pathOf(Base.getFile());
+  return !Opts.isUserSource(Header) ||
+         Folders.of(Header) != Folders.of(pathOf(F.getSubprogram()->getFile()));
+}
+
+/// True if \p F, in \p Slot of a vtable, overrides a function of \p Base, a
+/// class of another library.
+bool Finder::overrides(const Function &F, unsigned Slot, StringRef Base) {
+  if (Rules.keepsOverrides(Base))
+    return false;
+  const auto *Class =
+      dyn_cast_or_null<DICompositeType>(F.getSubprogram()->getScope());
+  const DICompositeType *Known = Class ? findBase(*Class, Base) : nullptr;
+  const std::optional<bool> Declared = declares(Known, Slot);
+  if (Declared && !*Declared)
+    return false;
+  const GlobalVariable *Info = M.getNamedGlobal(("_ZTI" + Base).str());
+  if (Info && Info->isDeclaration())
+    // Without the members of the class, what this unit calls through a class of
+    // its own may be new in that.
+    return Declared || !isCalledThroughClass(F);
+  if (Known && isElsewhere(*Known, F))
+    return true;
+  return Opts.SharedLibrary && Declared && !isCalledThroughClass(F);
+}
+
+Function *Finder::overriding(const VirtualFunction &V) {
+  Function *F = behindThunk(V.F);
+  if (!F || F->isDeclaration() || !Sources.has(*F) || Rules.isOpaque(*F) ||
+      F->getSubprogram()->getName().starts_with("~"))
+    return nullptr;
+  return any_of(V.Bases,
+                [&](StringRef Base) { return overrides(*F, V.Slot, Base); })
+             ? F
+             : nullptr;
+}
+
+SmallSetVector<Function *, 8> overridingFunctions(Module &M,
+                                                  const CallGraphResult &Calls,
+                                                  const RuleMatches &Rules,
+                                                  const Options &Opts) {
+  SmallSetVector<Function *, 8> Found;
+  if (!Rules.showsOverrides())
+    return Found;
+  Finder In(M, Calls, Rules, Opts);
+  ClassHierarchy(M).forEachFunction([&](const VirtualFunction &V) {
+    if (Function *F = In.overriding(V))
+      Found.insert(F);
+  });
+  return Found;
+}
+
+SmallVector<const Argument *, 4> writtenArguments(const Function &F) {
+  SmallVector<const Argument *, 4> Written;
+  SmallVector<std::string, 4> Types = parameterTypes(F);
+  const SmallBitVector Const = constArguments(F);
+  // If an argument is not one in the code, no type is known.
+  const size_t First = F.arg_size() - std::min(F.arg_size(), Types.size());
+  for (const Argument &Arg : F.args()) {
+    const unsigned N = Arg.getArgNo();
+    StringRef Type = N < First ? "" : StringRef(Types[N - First]);
+    bool IsHanded = Type.ends_with("&") || Type.ends_with("*");
+    if (Arg.getType()->isPointerTy() &&
+        (Arg.hasStructRetAttr() || (IsHanded && !Const.test(N))))
+      Written.push_back(&Arg);
+  }
+  return Written;
+}
+
+} // namespace tpc
