@@ -26,7 +26,7 @@ from pytpc.base.signals import stop_on_signals
 from pytpc.base.wording import many
 from pytpc.cli.arguments import PATH, as_object
 from pytpc.recording.faults import faults_of
-from pytpc.recording.mission import REPORTS_FOLDER
+from pytpc.recording.mission import REPORTS_FOLDER, RUN_FILE
 from pytpc.ros.ros1.master import uri_of
 
 _SILENT_S = 5.0
@@ -146,6 +146,15 @@ def _show_run(run: MissionRun, given: _RecordArguments) -> None:
     before = sum(run.missed_before.values())
     if before and given.workspace is None:
         click.echo(f"{many(before, 'log message')} from before the recording", err=True)
+    dropped = sum(each.count for each in run.dropped)
+    if dropped:
+        places = len({each.key for each in run.dropped})
+        click.echo(
+            f"warning: {many(dropped, 'report')} of {many(places, 'comparison')} never left"
+            f" {many(len({each.node for each in run.dropped}), 'node')}:"
+            f" {given.output / RUN_FILE} has them",
+            err=True,
+        )
     folder = given.output / REPORTS_FOLDER
     files = len(list(folder.glob("*.tpc")))
     if files:

@@ -22,6 +22,7 @@ from pytpc.recording.mission import (
     REPORTS_FOLDER,
     RUN_FILE,
     SUMMARIES_FILE,
+    Dropped,
 )
 from pytpc.values.origins import ORIGINS_FILE, START_FILE
 
@@ -39,7 +40,8 @@ class RecorderStatus:
 
     ``done_ns`` is when a topic said that the mission is done, None before.
     ``missed_before`` has the messages on /rosout that a node sent before the recorder was
-    connected, ``lost`` those that went missing afterwards.
+    connected, ``lost`` those that went missing afterwards. ``dropped`` has for each comparison the
+    reports that its process says never left it.
     """
 
     ready: bool = False
@@ -51,6 +53,7 @@ class RecorderStatus:
     messages: dict[str, int] = field(default_factory=dict)
     lost: dict[str, int] = field(default_factory=dict)
     missed_before: dict[str, int] = field(default_factory=dict)
+    dropped: tuple[Dropped, ...] = ()
 
     @property
     def done(self) -> bool:
@@ -107,6 +110,7 @@ class MissionRun:
     graph's clock, ``wall_s`` on the wall's; ``done_ns`` is when on the former it was done, None
     where nobody said so. ``lost`` has for each node the messages on /rosout that
     did not reach the bag, ``missed_before`` those from before the recorder was connected to it.
+    ``dropped`` has the reports that never left their process.
     """
 
     bag: Path
@@ -119,6 +123,7 @@ class MissionRun:
     lost: dict[str, int]
     missed_before: dict[str, int]
     done_ns: int | None = None
+    dropped: tuple[Dropped, ...] = ()
 
     @classmethod
     def of(cls, status: RecorderStatus, out_dir: Path, ended: str, wall_s: float) -> MissionRun:
@@ -134,6 +139,7 @@ class MissionRun:
             lost=status.lost,
             missed_before=status.missed_before,
             done_ns=status.done_ns,
+            dropped=status.dropped,
         )
 
     @property
@@ -190,7 +196,9 @@ def save_run(run: MissionRun, options: RecordOptions) -> None:
 def read_status(path: Path) -> RecorderStatus | None:
     """The state that the recorder saved last; None if it has saved none."""
     try:
-        return RecorderStatus(**json.loads(path.read_text(encoding="utf-8")))
+        status = json.loads(path.read_text(encoding="utf-8"))
+        dropped = tuple(Dropped(**each) for each in status.pop("dropped"))
+        return RecorderStatus(**status, dropped=dropped)
     except FileNotFoundError:
         return None
 

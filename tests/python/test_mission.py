@@ -29,7 +29,7 @@ from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.ingest.losses import LossCounter
 from pytpc.ingest.ros1 import decode_log
 from pytpc.recording.marks import Mark
-from pytpc.recording.mission import Recording
+from pytpc.recording.mission import Dropped, Recording
 from pytpc.ros.mission_run import (
     MissionRun,
     RecorderStatus,
@@ -286,6 +286,26 @@ def test_recorder_stamps_with_the_clock_and_keeps_the_account(tmp_path):
         ("/rosout", 4_000_000_000),
         ("/rosout", 4_000_000_000),
     ]
+
+
+def test_reports_that_never_left_their_process_are_counted_by_comparison(tmp_path):
+    bag = BagFile(tmp_path / "a.bag")
+    recorder = Recorder(bag, ["/rosout"], None, sim_time=False)
+    one, other = (f"00000000-0000-5000-8000-00000000000{n}" for n in (1, 2))
+    drop = b"threshold_dropped:%s,count:%d,flops:1,why:%s"
+    batch = b"threshold_batch:#seq:0,count:0,dropped:7,pid:1,steady:0"
+    first, second = (drop % (one.encode(), 2, b"site"), drop % (other.encode(), 5, b"process"))
+    recorder.take(ROSOUT, log(b"/a", 1, drop % (one.encode(), 3, b"site")))
+    recorder.take(ROSOUT, log(b"/a", 2, batch + b"\n1.0000000," + first + b"\n1.5000000," + second))
+    recorder.take(ROSOUT, log(b"/b", 1, b"a word about threshold_dropped:"))
+    bag.close()
+    status = recorder.status()
+    save_status(status, tmp_path / "status.json")
+    assert read_status(tmp_path / "status.json") == status
+    assert status.dropped == (
+        Dropped(one, "/a", 5, 2, "site"),
+        Dropped(other, "/a", 5, 1, "process"),
+    )
 
 
 def messages_in(path):

@@ -21,7 +21,9 @@ from pytpc.base.errors import RunError
 from pytpc.base.signals import stop_on_signals
 from pytpc.ingest.losses import LossCounter
 from pytpc.ingest.ros1 import decode_log, decode_string, decode_time
+from pytpc.ingest.rosout_line import DROPPED_PREFIX, Drop, parse_other
 from pytpc.recording.marks import MarkMessages
+from pytpc.recording.mission import Dropped
 from pytpc.ros.mission_run import RecorderStatus, save_status
 from pytpc.ros.ros1.bag_file import BagFile
 from pytpc.ros.ros1.master import Master
@@ -29,6 +31,7 @@ from pytpc.ros.ros1.subscriber import RawSubscriber, Source
 
 REPORT = b"threshold_information:"
 BATCH = b"threshold_batch:"
+DROPPED = DROPPED_PREFIX.encode()
 NODE_NAME = "/tpc_recorder"
 STATUS_PERIOD_S = 0.2
 DRAIN_S = 2.0
@@ -57,6 +60,7 @@ class Recorder:
         self._counter: LossCounter[str] = LossCounter()
         self._batches: LossCounter[str] = LossCounter()
         self._reports = 0
+        self._dropped: dict[tuple[str, str, str], Dropped] = {}
         self._done_ns: int | None = None
         self._early: list[tuple[Source, bytes]] = []
         self._began_ns = self.now_ns()
@@ -89,10 +93,26 @@ class Recorder:
             self._reports += log.msg.startswith(REPORT)
             if log.msg.startswith(BATCH):
                 self._reports += self._batches.see_text(sender, log.msg[len(BATCH) :])
+            self._see_dropped(sender, log.msg)
         elif source.topic == _REPORTS:
-            self._reports += self._counter.see_text(source.node, decode_string(data))
+            text = decode_string(data)
+            self._reports += self._counter.see_text(source.node, text)
+            self._see_dropped(source.node, text)
         elif source.topic == self._until and any(data) and self._done_ns is None:
             self._done_ns = self.now_ns()
+
+    def _see_dropped(self, node: str, text: bytes) -> None:
+        """Count what the process of ``node`` says in this text that it dropped."""
+        if DROPPED not in text:
+            return
+        for line in text.decode("utf-8", "replace").split("\n"):
+            drop = parse_other(line, node, stamped=not line.startswith(DROPPED_PREFIX))
+            if isinstance(drop, Drop):
+                known = self._dropped.get((node, drop.key, drop.why))
+                count, flops = (known.count, known.flops) if known else (0, 0)
+                self._dropped[node, drop.key, drop.why] = Dropped(
+                    drop.key, node, count + drop.count, flops + drop.flops, drop.why
+                )
 
     def put_early(self) -> None:
         """Put the messages that wait for the first /clock into the bag; call it before closing.
@@ -116,6 +136,7 @@ class Recorder:
             messages=dict(sorted(self._bag.messages.items())),
             lost=dict(sorted(self._counter.lost.items())),
             missed_before=dict(sorted(self._counter.missed_before.items())),
+            dropped=tuple(sorted(self._dropped.values(), key=Dropped.order)),
         )
 
 
