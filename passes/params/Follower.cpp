@@ -214,6 +214,13 @@ bool Follower::carry(const State &S, Use &U) {
     push({I, S.How, S.Path, S.Direct, S.In, S.Origin});
     return true;
   }
+  if (const auto *Phi = dyn_cast<PHINode>(I)) {
+    auto [It, New] = Stepped.try_emplace(Phi);
+    if (New)
+      It->second = isStepped(*Phi);
+    if (It->second)
+      return false;
+  }
   if (isa<PHINode>(I) || (isa<SelectInst>(I) && U.getOperandNo() != 0)) {
     Transform How = S.How;
     How.Merged = true;

@@ -131,6 +131,7 @@ private:
   llvm::DenseMap<const llvm::LoadInst *,
                  std::unique_ptr<llvm::SmallVector<ScalarPart, 1>>>
       Parts;
+  llvm::DenseMap<const llvm::PHINode *, bool> Stepped;
 
   ParameterUsage Usage;
   Worklist Work;

@@ -1,6 +1,7 @@
 //===- Idioms.cpp ---------------------------------------------------------===//
 #include "params/Idioms.h"
 
+#include "memory/Variables.h"
 #include "params/Transform.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
@@ -61,6 +62,37 @@ bool isComputedFrom(const Value *V, const Value *Source) {
     return From == Source || (Load && Other &&
                               isSameVariable(Load->getPointerOperand(),
                                              Other->getPointerOperand()));
+  });
+}
+
+/// True for arithmetic that gives the next value of a series: not by a constant
+/// whole number.
+static bool isStep(const Value &V) {
+  if (const auto *Call = dyn_cast<IntrinsicInst>(&V))
+    return isMultiplyAdd(*Call);
+  const auto *Op = dyn_cast<BinaryOperator>(&V);
+  if (!Op)
+    return false;
+  switch (Op->getOpcode()) {
+  case Instruction::FAdd:
+  case Instruction::FSub:
+  case Instruction::FMul:
+  case Instruction::FDiv:
+    return true;
+  case Instruction::Add:
+  case Instruction::Sub:
+  case Instruction::Mul:
+    return none_of(Op->operands(),
+                   [](const Use &U) { return isa<Constant>(U); });
+  default:
+    return false;
+  }
+}
+
+bool isStepped(const PHINode &Merge) {
+  // A step anywhere on the way from the phi back to itself.
+  return anySource(&Merge, [&](const Value *Step) {
+    return isStep(*Step) && isComputedFrom(Step, &Merge);
   });
 }
 

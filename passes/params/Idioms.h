@@ -37,6 +37,12 @@ bool isComputedFrom(const llvm::Value *V, const llvm::Value *Source);
 /// the variable held before.
 bool isMovedOn(const llvm::StoreInst &Store);
 
+/// True if \p Merge, a phi of a loop, is moved on by arithmetic in each round:
+/// a sampled or accumulated value, whatever it began with. Counting a whole
+/// number down to zero by constants is not meant: its first value decides how
+/// often the loop runs.
+bool isStepped(const llvm::PHINode &Merge);
+
 /// Whether \p I multiplies a value with itself, even if it is computed twice:
 /// 1, or -1 if one factor is negated; otherwise 0.
 int squareOf(const llvm::Instruction &I);

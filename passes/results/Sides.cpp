@@ -187,13 +187,15 @@ bool Sides::isMeasured(const ParameterComparison &C,
         return Other->Operand != C.Operand && !Other->How.Variables;
       }))
     return true;
-  return any_of(Others,
-                [&](const ParameterComparison *Other) {
-                  return Other->Operand != C.Operand &&
-                         decides(*Other, Predicate);
-                }) &&
-         !isConfigured(C.Compare->getOperand(C.Operand)) &&
-         isConfigured(C.Compare->getOperand(1 - C.Operand));
+  const Value *Own = C.Compare->getOperand(C.Operand);
+  const Value *Other = C.Compare->getOperand(1 - C.Operand);
+  const bool AreBoth = any_of(Others, [&](const ParameterComparison *O) {
+    return O->Operand != C.Operand && decides(*O, Predicate);
+  });
+  // A formula that is compared with a constant was judged before. Most counters
+  // are configured too: they count up from a constant.
+  return (AreBoth || (isa<Constant>(Other) && !C.How.Variables)) &&
+         !isConfigured(Own) && isConfigured(Other);
 }
 
 } // namespace tpc

@@ -2,8 +2,8 @@
 //
 // Both operands of a comparison can hold the value of a parameter: `if
 // (out.data < lower_)` after `out.data = upper_`. The threshold is the operand
-// that is always configured. An operand that is a measured value on another
-// path is the one that is compared with it.
+// that is always configured, as constants are. An operand that is a measured
+// value on another path is the one that is compared with it.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_SIDES_H
@@ -31,8 +31,8 @@ public:
   bool isOtherWay(const ParameterComparison &C,
                   const llvm::Instruction &Predicate);
   /// True if \p C, in what decides \p Predicate, is about the operand that is
-  /// not the threshold: it can be something else than a parameter, and the
-  /// other operand cannot.
+  /// not the threshold: it can be something else than a parameter or constant,
+  /// and the other operand cannot.
   bool isMeasured(const ParameterComparison &C,
                   const llvm::Instruction &Predicate);
 

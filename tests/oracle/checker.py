@@ -52,12 +52,16 @@ class How:
 
 @dataclass(frozen=True)
 class State:
-    """A value on the way forward; `origin` is what it was before it was merged with others."""
+    """A value on the way forward; `origin` is what it was before it was merged with others.
+
+    `is_data`: it went through a loop that moves it on.
+    """
 
     value: Value
     how: How
     context: Context
     origin: Value | None = None
+    is_data: bool = False
 
 
 class Rules:
@@ -81,7 +85,10 @@ class Rules:
 
 @dataclass(frozen=True, order=True)
 class Finding:
-    """A threshold predicate comparison."""
+    """A threshold predicate comparison.
+
+    `is_data`: what is compared may be called data instead, see DATA in the README.
+    """
 
     file: str
     line: int
@@ -90,6 +97,7 @@ class Finding:
     type: str
     relation: str
     distance: int
+    is_data: bool
 
 
 @dataclass(frozen=True)
@@ -104,6 +112,7 @@ class Compared:
     relation: str
     place: Instruction
     predicate: Instruction
+    is_data: bool = False
 
 
 def check(text: str, excluded: str) -> set[Finding]:
@@ -138,6 +147,7 @@ class Checker:
 
     def findings(self) -> set[Finding]:
         nearest: dict[tuple[str, ...], int] = {}
+        plain: set[tuple[str, ...]] = set()
         comparisons = self.comparisons()
         deciding = {c.place for c in comparisons if c.predicate in self.distance}
         for c in comparisons:
@@ -148,9 +158,14 @@ class Checker:
             if distance is not None and place and self.is_user(place.file) and place.line:
                 what = (place, c.parameter, c.type, c.relation)
                 nearest[what] = min(distance, nearest.get(what, distance))
+                if not c.is_data:
+                    plain.add(what)
         return {
-            Finding(p.file, p.line, p.column, parameter, type_, relation, distance)
-            for (p, parameter, type_, relation), distance in nearest.items()
+            Finding(
+                p.file, p.line, p.column, parameter, type_, relation, distance, what not in plain
+            )
+            for what, distance in nearest.items()
+            for p, parameter, type_, relation in [what]
         }
 
     # The slice, by rounds ---------------------------------------------------
@@ -379,6 +394,7 @@ class Checker:
     def after(self, name: str, at: State, user: Instruction, out: set[Compared]) -> list[State]:
         """Where `user` carries the value on to; what it compares or decides goes into `out`."""
         value, how, context, origin = at.value, at.how, at.context, at.origin
+        is_data = at.is_data or self.is_stepped(user)
         if user.opcode in ("icmp", "fcmp"):
             self.compared(name, at, user, out)
         elif is_joined(user, value):
@@ -390,16 +406,65 @@ class Checker:
             elif user.opcode == "switch":
                 out.add(Compared(name, how.type, "flag", origin or user, user))
         elif user.opcode in CASTS:
-            return [State(user, cast(how, user), context, origin)]
+            return [State(user, cast(how, user), context, origin, is_data)]
         elif changed := self.computed(how, user, value):
-            return [State(user, changed, context)]
+            return [State(user, changed, context, None, is_data)]
         else:
             # What is merged with other values stands where it was its own.
             begins = origin or (value if isinstance(value, Instruction) else None)
             merged = begins if user.opcode in ("phi", "select") else None
             kept = origin if user.opcode == "freeze" else merged
-            return [State(v, how, c, kept) for v, c in self.carried(user, value, context)]
+            return [State(v, how, c, kept, is_data) for v, c in self.carried(user, value, context)]
         return []
+
+    def is_stepped(self, merge: Instruction) -> bool:
+        """True for a merge whose value a loop computes from the last one."""
+        if merge.opcode != "phi":
+            return False
+        before = self.sources(merge)
+        return any(is_step(i) and merge in self.sources(i) for i in before)
+
+    def sources(self, value: Instruction) -> set[Instruction]:
+        """The instructions of its function that `value` is computed from."""
+        seen, todo = set(), list(value.operands)
+        while todo:
+            at = todo.pop()
+            if isinstance(at, Instruction) and at not in seen and is_arithmetic(at):
+                seen.add(at)
+                todo += at.operands
+        return seen
+
+    def is_configured(self, value: Value) -> bool:
+        """True if `value` comes from constants and parameters alone, as far as can be seen."""
+        seen, todo = {value}, [value]
+        while todo:
+            at = todo.pop()
+            new: list[Value] = []
+            if isinstance(at, Argument):
+                calls = self.program.callers(at.function)
+                if not calls or any(at.index >= len(c.arguments) for c in calls):
+                    return False
+                new = [c.arguments[at.index] for c in calls]
+            elif isinstance(at, Instruction) and at.opcode == "load":
+                for write in self.memory.definitions(at):
+                    if write.opcode == "store":
+                        new.append(write.operands[0])
+                    elif not (write.is_call and self.rules.READ.match(write.callee.name)):
+                        return False
+            elif isinstance(at, Instruction) and at.is_call and self.program.callees(at):
+                new = [
+                    v
+                    for f in self.program.callees(at)
+                    for r in self.program.returns(f)
+                    for v in r.operands
+                ]
+            elif isinstance(at, Instruction):
+                if not is_arithmetic(at):
+                    return False
+                new = at.operands[1:] if at.opcode == "select" else at.operands
+            todo += [v for v in new if v not in seen]
+            seen |= set(new)
+        return True
 
     def flag(
         self, name: str, value: Value, decided: dict[Instruction, bool], out: set[Compared]
@@ -418,8 +483,10 @@ class Checker:
         if is_flag:
             self.flag(name, by, self.decides(by, at.context), out)
             return
+        other = right if left is at.value else left
+        is_data = at.is_data or (other.kind == "constant" and not self.is_configured(at.value))
         for predicate in [by, *self.decides(by, at.context)]:
-            out.add(Compared(name, at.how.type, relation, by, predicate))
+            out.add(Compared(name, at.how.type, relation, by, predicate, is_data))
 
     def computed(self, how: How, by: Instruction, value: Value) -> How | None:
         """The arithmetic after `by`; None where that is none with constants alone."""
@@ -586,6 +653,19 @@ def is_side(compared: Value, side: Value) -> bool:
             return True
     known = constant_side(side)
     return known is not None and constant_number(compared) == known
+
+
+def is_arithmetic(i: Instruction) -> bool:
+    """True for what computes or merges values of its own function."""
+    pure = i.is_call and i.callee.name.startswith(("llvm.fabs", "llvm.fmuladd", "llvm.fma"))
+    return i.opcode in ARITHMETIC | CASTS | {"phi", "select", "freeze", "fneg"} or pure
+
+
+def is_step(i: Instruction) -> bool:
+    """True for what gives the next value of a series; a count by a constant is none."""
+    if i.opcode in ("add", "sub", "mul"):
+        return all(o.kind != "constant" for o in i.operands)
+    return i.opcode in ("fadd", "fsub", "fmul", "fdiv") or i.is_call
 
 
 def is_choice(i: Instruction) -> bool:

@@ -47,10 +47,14 @@ class Broken(Exception):
 
 @dataclass
 class Answers:
-    """What both find: (line, column, parameter, type, relation) -> distance."""
+    """What both find: (line, column, parameter, type, relation) -> distance.
+
+    ``data`` are those of the checker that the passes may leave out.
+    """
 
     passes: Found
     checker: Found
+    data: frozenset[tuple[int, int, str, str, str]] = frozenset()
 
     def lines(self, first: int, last: int) -> Answers:
         """The part between two lines, counted from the first."""
@@ -59,16 +63,20 @@ class Answers:
             inside = {k: d for k, d in found.items() if first <= k[0] <= last}
             return {(k[0] - first, *k[1:]): d for k, d in inside.items()}
 
-        return Answers(part(self.passes), part(self.checker))
+        data = part(dict.fromkeys(self.data, 0))
+        return Answers(part(self.passes), part(self.checker), frozenset(data))
 
     def difference(self) -> list[str]:
         """A line for each place that the two disagree about."""
         one, other = by_place(self.passes), by_place(self.checker)
+        sure = by_place({k: d for k, d in self.checker.items() if k not in self.data})
         out = []
         for place in sorted(one.keys() | other.keys()):
             passes, checker = one.get(place, {}), other.get(place, {})
             allowed = place in other and (other_side(place, one) or as_flag(place, one, other))
-            if not agree(passes, checker) and not allowed:
+            # Allowed difference DATA (README).
+            agreed = agree(passes, checker) or agree(passes, sure.get(place, {}))
+            if not agreed and not allowed:
                 out.append(f"{' '.join(map(str, place))}: passes {passes}, checker {checker}")
         return out
 
@@ -151,11 +159,13 @@ def ask(source: str, folder: Path, level: str = "-O2") -> Answers:
         if m := LINE.match(line):
             key = (int(m["line"]), int(m["column"]), m["parameter"], m["type"], m["relation"])
             found[key] = min(int(m["distance"]), found.get(key, 1 << 30))
-    own = {
-        (f.line, f.column, f.parameter, f.type, f.relation): f.distance
-        for f in check(prepared.read_text(), str(INPUTS))
-    }
-    return Answers(found, own)
+    own, data = {}, set()
+    for f in check(prepared.read_text(), str(INPUTS)):
+        key = (f.line, f.column, f.parameter, f.type, f.relation)
+        own[key] = f.distance
+        if f.is_data:
+            data.add(key)
+    return Answers(found, own, frozenset(data))
 
 
 def tool(command: list[str]) -> str:
