@@ -7,7 +7,6 @@
 #include "support/Names.h"
 
 #include "llvm/ADT/SetVector.h"
-#include "llvm/Demangle/Demangle.h"
 #include "llvm/IR/DebugInfoMetadata.h"
 #include "llvm/IR/Module.h"
 #include "llvm/Support/MemoryBuffer.h"
@@ -92,10 +91,7 @@ bool Rules::isSilent(StringRef Name) const {
 }
 
 bool Rules::keepsOverrides(StringRef Class) const {
-  std::string Text = demangle(("_ZTI" + Class).str());
-  StringRef Name = Text;
-  Name.consume_front("typeinfo for ");
-  return beginsWithOneOf(Name, KeptOverrides);
+  return beginsWithOneOf(className(Class), KeptOverrides);
 }
 
 RuleTables RuleTableAnalysis::run(Module &M, ModuleAnalysisManager &AM) {

@@ -13,7 +13,7 @@ Wording::Wording(const LocationTypes &Types, PointsTo &Pointers,
                  const ExternCallFinder::Result &Exposing, const Options &Opts)
     : Pointers(Pointers), Sources(Opts), Names(Types) {
   for (const ExposingStatement &E : Exposing)
-    if (!E.isGivenBack())
+    if (E.IsCall)
       this->Exposing[E.At] = &E;
 }
 
@@ -67,7 +67,7 @@ std::string Wording::value(const Value *V) const {
 }
 
 std::string Wording::exposed(const ExposingStatement &E) const {
-  if (E.isGivenBack())
+  if (!E.IsCall)
     return "given back by " + E.Topic;
   StringRef Name = unscoped(E.Api);
   std::string Text = Name == "publish" ? "published"

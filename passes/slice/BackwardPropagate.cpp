@@ -460,11 +460,15 @@ SliceResult Slicer::run() {
   for (const auto &[N, E] : enumerate(Exposing)) {
     Current = N;
     // Who calls an overriding function decides nothing about it.
-    if (E.isGivenBack())
+    if (isa<ReturnInst>(E.At))
       Next.push_back({E.At, E.Written ? Exposes : Gives, Current,
                       addStep(E.At, Why::Exposes)});
     else
-      enter(E.At, Exposes, Why::Exposes);
+      enter(E.At,
+            E.IsCall               ? Exposes
+            : isa<CallBase>(*E.At) ? Touches
+                                   : Gives,
+            Why::Exposes);
   }
   for (; !Next.empty(); ++Round) {
     SmallVector<Item, 0> Items = std::move(Next);

@@ -107,13 +107,20 @@ ExternCallFinder::Result ExternCallFinder::run(Module &M,
     std::string Topic = Row.Name
                             ? Known.nameOf(Call, Row)
                             : topicOf(objectOf(Call, Row), Named, Pointers);
-    R.push_back(
-        {&Call, Row.Function, isDynamic(Topic) ? "" : std::move(Topic)});
+    R.push_back({&Call, Row.Function, isDynamic(Topic) ? "" : std::move(Topic),
+                 nullptr,
+                 /*IsCall=*/true});
   });
-  for (Function *F :
-       overridingFunctions(M, AM.getResult<SimpleCallGraph>(M), Rules,
-                           AM.getResult<OptionsAnalysis>(M)))
+  const SmallSetVector<Function *, 8> Overriding =
+      overridingFunctions(M, AM.getResult<SimpleCallGraph>(M), Rules,
+                          AM.getResult<OptionsAnalysis>(M));
+  for (Function *F : Overriding)
     addGivenBack(*F, R);
+  for (InheritedWrite &W : inheritedWrites(M, Overriding)) {
+    std::string Name = qualifiedName(W.I->getFunction()->getName());
+    std::string Topic = (unscoped(Name) + " -> " + W.Class).str();
+    R.push_back({W.I, std::move(Name), std::move(Topic)});
+  }
   return R;
 }
 

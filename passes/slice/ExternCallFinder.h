@@ -17,15 +17,16 @@
 namespace tpc {
 
 struct ExposingStatement {
-  /// The call; for an overriding function, a return.
+  /// The call; for an overriding function, a return; for the inherited part of
+  /// an object, what writes to it.
   llvm::Instruction *At;
   std::string Api;   ///< the function, with scopes
   std::string Topic; ///< empty if no constant names it
   /// What an overriding function writes; null if it is the result.
   const llvm::Argument *Written = nullptr;
 
-  /// True if what leaves the unit is what an overriding function gives back.
-  bool isGivenBack() const { return llvm::isa<llvm::ReturnInst>(At); }
+  /// The call of a function that the rules list.
+  bool IsCall = false;
 };
 
 class ExternCallFinder : public llvm::AnalysisInfoMixin<ExternCallFinder> {

@@ -5,7 +5,6 @@
 #include "support/Names.h"
 
 #include "llvm/BinaryFormat/Dwarf.h"
-#include "llvm/Demangle/Demangle.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/Support/FileSystem.h"
 
@@ -180,6 +179,116 @@ SmallVector<const Argument *, 4> writtenArguments(const Function &F) {
       Written.push_back(&Arg);
   }
   return Written;
+}
+
+namespace {
+
+/// The classes that this unit defines: by their type information, or by a
+/// method that is not in a header.
+class OwnClasses {
+public:
+  explicit OwnClasses(Module &M) {
+    for (const GlobalVariable &G : M.globals())
+      if (StringRef Name = G.getName();
+          !G.isDeclaration() && Name.consume_front("_ZTI"))
+        Names.insert(className(Name));
+    for (const Function &F : definedFunctions(M))
+      if (const DISubprogram *SP = F.getSubprogram();
+          SP && SP->getUnit() &&
+          pathOf(SP->getFile()) == pathOf(SP->getUnit()->getFile()))
+        Names.insert(scopeOf(F));
+  }
+
+  static std::string scopeOf(const Function &F) {
+    return StringRef(qualifiedName(F.getName())).rsplit("::").first.str();
+  }
+  bool has(StringRef Class) const { return Names.contains(Class); }
+
+private:
+  StringSet<> Names;
+};
+
+} // namespace
+
+/// The class of another library in whose part of `this`, the object of \p F,
+/// \p Pointer lies, or in an array that this part points to; empty if it lies
+/// elsewhere.
+static std::string inheritedPart(const Value *Pointer, const Function &F,
+                                 const OwnClasses &Own) {
+  const Value *This = F.getArg(F.hasStructRetAttr() ? 1 : 0);
+  // The outermost field is the one nearest to `this`.
+  StructType *Outermost = nullptr;
+  constexpr unsigned MostSteps = 16;
+  for (unsigned N = 0; N < MostSteps && Pointer != This; ++N) {
+    if (const auto *GEP = dyn_cast<GEPOperator>(Pointer)) {
+      if (auto *Class = dyn_cast<StructType>(GEP->getSourceElementType()))
+        Outermost = Class;
+      Pointer = GEP->getPointerOperand();
+    } else if (const auto *Load = dyn_cast<LoadInst>(Pointer);
+               Load && !Outermost) {
+      Pointer = Load->getPointerOperand();
+    } else {
+      return "";
+    }
+  }
+  if (Pointer != This || !Outermost)
+    return "";
+  StringRef Class = plainClassName(*Outermost);
+  return Own.has(Class) ? "" : Class.str();
+}
+
+/// The same for the object on which \p Call calls a method of another library
+/// that is not const.
+static std::string inheritedObject(const CallBase &Call, const Function &F,
+                                   const OwnClasses &Own) {
+  const Function *Callee = Call.getCalledFunction();
+  if (!Callee || !Callee->isDeclaration() || endsLife(Call) ||
+      !Callee->getName().starts_with("_ZN") ||
+      Callee->getName().starts_with("_ZNK"))
+    return "";
+  const unsigned First = Callee->hasStructRetAttr() ? 1 : 0;
+  if (Call.arg_size() <= First)
+    return "";
+  const Value *Object = Call.getArgOperand(First);
+  // A base that is not at the beginning is some bytes further on.
+  while (const auto *GEP = dyn_cast<GEPOperator>(Object)) {
+    if (!GEP->getSourceElementType()->isIntegerTy(8))
+      return "";
+    Object = GEP->getPointerOperand();
+  }
+  std::string Class = OwnClasses::scopeOf(*Callee);
+  if (Object != F.getArg(F.hasStructRetAttr() ? 1 : 0) || Own.has(Class))
+    return "";
+  return Class;
+}
+
+SmallVector<InheritedWrite, 0>
+inheritedWrites(Module &M, const SmallSetVector<Function *, 8> &Overriding) {
+  SmallVector<InheritedWrite, 0> Found;
+  StringSet<> Derived;
+  for (const Function *F : Overriding)
+    Derived.insert(OwnClasses::scopeOf(*F));
+  if (Derived.empty())
+    return Found;
+  const OwnClasses Own(M);
+  for (Function &F : definedFunctions(M)) {
+    const std::string Class = OwnClasses::scopeOf(F);
+    StringRef Method = F.getSubprogram() ? F.getSubprogram()->getName() : "";
+    // What a constructor sets is not seen before it ends.
+    if (!Derived.contains(Class) || F.arg_empty() || Method.empty() ||
+        Method.starts_with("~") || Method == unscoped(Class))
+      continue;
+    for (Instruction &I : instructions(F)) {
+      std::string Part;
+      if (const auto *Store = dyn_cast<StoreInst>(&I))
+        Part = inheritedPart(Store->getPointerOperand(), F, Own);
+      else if (const auto *Call = dyn_cast<CallBase>(&I))
+        Part = inheritedObject(*Call, F, Own);
+      if (!Part.empty())
+        Found.push_back({&I, unscoped(Part).str()});
+    }
+  }
+  return Found;
 }
 
 } // namespace tpc

@@ -3,6 +3,8 @@
 // A planner, a controller or a layer of a map is a class that derives from one
 // of another library, which calls it through that. What such a call returns,
 // and what it writes into the objects that it is handed, leaves the link unit.
+// So does what its class writes into the part of its object that it inherits
+// from there.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_OVERRIDING_H
@@ -32,6 +34,19 @@ overridingFunctions(llvm::Module &M, const CallGraphResult &Calls,
 /// place of its result if that is an object.
 llvm::SmallVector<const llvm::Argument *, 4>
 writtenArguments(const llvm::Function &F);
+
+/// A store, or a call of a method of another library, through which a method
+/// changes the inherited part of its object.
+struct InheritedWrite {
+  llvm::Instruction *I;
+  std::string Class; ///< that the part is of, without scopes
+};
+
+/// Those in the methods of the classes of \p Overriding, in the order of the
+/// module.
+llvm::SmallVector<InheritedWrite, 0>
+inheritedWrites(llvm::Module &M,
+                const llvm::SmallSetVector<llvm::Function *, 8> &Overriding);
 
 } // namespace tpc
 

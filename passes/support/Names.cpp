@@ -60,6 +60,12 @@ static StringRef linkageName(const Function &F) {
   return Linkage.empty() ? F.getName() : Linkage;
 }
 
+std::string className(StringRef Mangled) {
+  std::string Text = demangle(("_ZTI" + Mangled).str());
+  StringRef Name = Text;
+  return Name.consume_front("typeinfo for ") ? Name.str() : Mangled.str();
+}
+
 StringRef unscoped(StringRef Name) {
   size_t Scope = Name.rfind("::");
   return Scope == StringRef::npos ? Name : Name.drop_front(Scope + 2);

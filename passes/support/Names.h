@@ -17,6 +17,9 @@ namespace tpc {
 /// mangled unchanged.
 std::string qualifiedName(llvm::StringRef Mangled);
 
+/// `ns::Node` for `N2ns4NodeE`, the mangled name of a class.
+std::string className(llvm::StringRef Mangled);
+
 /// \p Name without scopes.
 llvm::StringRef unscoped(llvm::StringRef Name);
 
