@@ -28,6 +28,7 @@ from pytpc.base.paths import (
     require_tools,
 )
 from pytpc.build.collect import find_copies
+from pytpc.build.doubled import doubled_sources
 from pytpc.build.fallback import LeftAlone
 from pytpc.build.python_nodes import PythonBuild, python_of_build
 from pytpc.build.python_units import names_of
@@ -317,7 +318,7 @@ def _gather(
     nodes = python_of_build(scripts, {*names_of(units), *names_of(left_out)}, on_scripts)
     units += nodes.units
     found = (*left_out, *nodes.left_out)
-    return StaticInfo.of(units, base, find_copies(units), found)
+    return StaticInfo.of(units, base, find_copies(units), found, doubled_sources(folders, units))
 
 
 def _compiled(folder: Path) -> list[Path]:

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from pytpc.base.errors import WorkspaceError
 from pytpc.base.paths import OWN_FOLDER
+from pytpc.build.doubled import doubled_sources
 from pytpc.build.python_units import PythonUnits, named_beside, names_of
 from pytpc.build.reconcile import build_folders, known_targets, left_out_units, target_names
 from pytpc.build.stale import (
@@ -78,6 +79,7 @@ def collect_sources(
         sources[0] if len(sources) == 1 else None,
         copies,
         (*left_out, *fresh.left_out),
+        doubled_sources(sorted(every), units),
     )
     return Collected(static, (*stale, *scriptless, *orphans, *repeated))
 

@@ -91,9 +91,16 @@ def show_units(static: StaticInfo) -> None:
 
 
 def tell_left_out(static: StaticInfo) -> None:
-    """A line for each link unit that was not analysed."""
+    """A line for each link unit that was not analysed, and for each source that does not report."""
     for left_out in static.left_out:
         text = f"{left_out.package}/{left_out.link_unit} reports nothing: {left_out.reason}"
+        click.echo(plain(text), err=True)
+    for doubled in static.doubled:
+        text = (
+            f"{doubled.package}/{doubled.link_unit}: {many(doubled.comparisons, 'comparison')} in"
+            f" {doubled.file} may not report: {doubled.runs} has the file, too, and a process with"
+            " both runs that one's functions"
+        )
         click.echo(plain(text), err=True)
 
 

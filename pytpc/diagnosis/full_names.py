@@ -42,7 +42,8 @@ def with_full_names(
     units = tuple(_renamed(unit, names) for unit in static_info.units)
     if all(new is old for new, old in zip(units, static_info.units, strict=True)):
         return static_info
-    return replace(static_info, units=units)
+    new = replace(static_info, units=units)
+    return replace(new, set_aside=frozenset(static_info.comparisons) - frozenset(new.comparisons))
 
 
 @dataclass(frozen=True)

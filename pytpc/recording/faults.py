@@ -70,7 +70,7 @@ def unknown_keys(events: Events, static_info: StaticInfo) -> dict[str, int]:
     return {
         key: counts[code]
         for code, key in enumerate(events.keys)
-        if counts[code] and key not in static_info.comparisons
+        if counts[code] and key not in static_info.comparisons and key not in static_info.set_aside
     }
 
 

@@ -104,6 +104,20 @@ class LeftOut:
 
 
 @dataclass(frozen=True, slots=True)
+class Doubled:
+    """A source file that is also linked into ``runs``, whose functions are the ones that run.
+
+    ``comparisons`` of ``link_unit`` in ``file`` (absolute) do not report in a process of both.
+    """
+
+    package: str
+    link_unit: str
+    runs: str
+    file: str
+    comparisons: int
+
+
+@dataclass(frozen=True, slots=True)
 class NotExposed:
     """A comparison with a parameter (``source``) on which nothing exposed depends."""
 

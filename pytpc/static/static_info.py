@@ -29,7 +29,7 @@ from pytpc.base.checked_json import (
 from pytpc.base.collector import without_collector
 from pytpc.base.errors import InputError, WorkspaceError
 from pytpc.base.paths import MERGED_FILE, OWN_FOLDER
-from pytpc.static.link_unit import Comparison, LeftOut, LinkUnit
+from pytpc.static.link_unit import Comparison, Doubled, LeftOut, LinkUnit
 from pytpc.static.places import Tpc, merge_places
 
 
@@ -40,12 +40,16 @@ class StaticInfo:
     Make one with ``of``, ``collect``, ``load`` or ``from_json``: they check that no unit and no
     key occurs twice. ``copies`` are the installed headers that are a package's own, as sorted pairs
     (absolute path of the copy, absolute path of the original), ``left_out`` the link units that
-    were not analysed.
+    were not analysed, ``doubled`` the source files whose comparisons do not report since another
+    unit has them, too. ``set_aside`` are the keys of comparisons that are known and do not count in
+    a mission; no file has them.
     """
 
     units: tuple[LinkUnit, ...]
     copies: tuple[tuple[str, str], ...] = ()
     left_out: tuple[LeftOut, ...] = ()
+    doubled: tuple[Doubled, ...] = ()
+    set_aside: frozenset[str] = frozenset()
 
     @classmethod
     def of(
@@ -54,6 +58,7 @@ class StaticInfo:
         path: Path | None = None,
         copies: Mapping[str, str] | None = None,
         left_out: Iterable[LeftOut] = (),
+        doubled: Iterable[Doubled] = (),
     ) -> StaticInfo:
         """Merge units.
 
@@ -62,6 +67,7 @@ class StaticInfo:
             path: where they came from, for messages.
             copies: installed headers -> the files that they are copies of.
             left_out: link units that were not analysed, in any order.
+            doubled: source files whose comparisons do not report.
 
         Raises:
             InputError: a unit of a package, or a key, occurs twice.
@@ -85,7 +91,8 @@ class StaticInfo:
                     )
                 owners[comparison.key] = unit
         without = sorted(left_out, key=lambda unit: (unit.package, unit.link_unit))
-        return cls(tuple(merged), tuple(sorted((copies or {}).items())), tuple(without))
+        known = tuple(sorted((copies or {}).items()))
+        return cls(tuple(merged), known, tuple(without), tuple(doubled))
 
     @cached_property
     def comparisons(self) -> dict[str, Comparison]:
@@ -135,14 +142,15 @@ class StaticInfo:
             "copies": dict(self.copies),
             "tpcs": [tpc.to_json() for tpc in self.tpcs],
             "left_out": [asdict(unit) for unit in self.left_out],
+            "doubled": [asdict(source) for source in self.doubled],
         }
 
     @classmethod
     def from_json(cls, data: object, path: Path) -> StaticInfo:
         """The reverse of ``to_json``; ``path`` is for messages.
 
-        Older documents have no ``copies``, ``tpcs`` and ``left_out``; the TPCs follow from the
-        rest.
+        Older documents lack ``copies``, ``tpcs``, ``left_out`` or ``doubled``; the TPCs follow from
+        the rest.
 
         Raises:
             InputError: the document is not one of ours, with the JSON pointer of the fault.
@@ -160,7 +168,8 @@ class StaticInfo:
         # The units have just been checked, each by the same schema.
         check_schema({**data, "units": []}, path, MERGED_SCHEMA)
         left_out = [LeftOut(**unit) for unit in data.get("left_out", ())]
-        return cls.of(units, path, data.get("copies"), left_out)
+        doubled = [Doubled(**source) for source in data.get("doubled", ())]
+        return cls.of(units, path, data.get("copies"), left_out, doubled)
 
     def save(self, path: Path) -> None:
         """Write the document atomically.

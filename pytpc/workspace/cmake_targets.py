@@ -6,6 +6,7 @@ was linked with what was analysed shows it.
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -22,13 +23,17 @@ _ANALYSED = frozenset({"CXX", "C"})
 class LinkTarget:
     """A target that is linked as C or C++; ``artifact`` is the file that comes of it.
 
-    ``objects`` is the folder in which its sources are compiled, where it has sources.
+    ``objects`` is the folder in which its sources are compiled, where it has sources. ``sources``
+    are those files, absolute; ``needs`` are the names of the targets that CMake builds before.
     """
 
     name: str
     package: str
     artifact: Path | None
     objects: Path | None = None
+    is_library: bool = False
+    sources: frozenset[Path] = frozenset()
+    needs: frozenset[str] = frozenset()
 
     @property
     def built(self) -> bool:
@@ -74,7 +79,12 @@ def link_targets(build_folder: Path) -> list[LinkTarget] | None:
             parse_json(reply / target["jsonFile"]) for target in configuration["targets"]
         ]
         targets = [
-            _link_target(target, configuration["projects"], entry["projectIndex"], build_folder)
+            _link_target(
+                target,
+                configuration["projects"][entry["projectIndex"]]["name"],
+                build_folder,
+                Path(codemodel["paths"]["source"]),
+            )
             for target, entry in zip(described, configuration["targets"], strict=True)
             if target["type"] in _LINKED and _language(target) in _ANALYSED
         ]
@@ -91,12 +101,21 @@ def _language(target: dict[str, Any]) -> str | None:
 
 
 def _link_target(
-    target: dict[str, Any], projects: list[Any], project: int, build_folder: Path
+    target: dict[str, Any], package: str, build_folder: Path, source_folder: Path
 ) -> LinkTarget:
     artifacts = [build_folder / artifact["path"] for artifact in target.get("artifacts", [])]
     below = target.get("paths", {}).get("build")
     objects = None
     if below is not None and target.get("compileGroups"):
         objects = build_folder / below / "CMakeFiles" / f"{target['name']}.dir"
-    name: str = projects[project]["name"]
-    return LinkTarget(target["name"], name, artifacts[0] if artifacts else None, objects)
+    compiled = [source for source in target.get("sources", []) if "compileGroupIndex" in source]
+    return LinkTarget(
+        target["name"],
+        package,
+        artifacts[0] if artifacts else None,
+        objects,
+        is_library=target["type"] != "EXECUTABLE",
+        sources=frozenset(Path(os.path.normpath(source_folder / s["path"])) for s in compiled),
+        # An identifier is the name and a hash: `costmap_2d::@6890427a1f51a3e7e1df`.
+        needs=frozenset(each["id"].rpartition("::@")[0] for each in target.get("dependencies", [])),
+    )

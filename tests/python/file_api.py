@@ -18,15 +18,28 @@ def reply(folder: Path, targets: list[dict[str, Any]], index: dict[str, Any] = I
         name = f"target-{number}.json"
         (answer / name).write_text(json.dumps(target), encoding="utf-8")
         listed.append({"jsonFile": name, "projectIndex": int(number == len(targets) - 1)})
-    model = {"configurations": [{"targets": listed, "projects": PROJECTS}]}
+    model = {
+        "paths": {"source": str(folder / "source"), "build": str(folder)},
+        "configurations": [{"targets": listed, "projects": PROJECTS}],
+    }
     (answer / "codemodel-v2-1.json").write_text(json.dumps(model), encoding="utf-8")
     (answer / "index-2026-01-02.json").write_text(json.dumps(index), encoding="utf-8")
 
 
-def target(name: str, kind: str, language: str = "CXX", artifact: str = "") -> dict[str, Any]:
+def target(
+    name: str,
+    kind: str,
+    language: str = "CXX",
+    artifact: str = "",
+    *,
+    sources: tuple[str, ...] = (),
+    needs: tuple[str, ...] = (),
+) -> dict[str, Any]:
     return {
         "name": name,
         "type": kind,
         "compileGroups": [{"language": language}],
         "artifacts": [{"path": artifact or f"devel/{name}"}],
+        "sources": [{"path": path, "compileGroupIndex": 0} for path in sources],
+        "dependencies": [{"id": f"{each}::@6890427a1f51a3e7e1df"} for each in needs],
     }

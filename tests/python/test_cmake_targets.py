@@ -28,8 +28,8 @@ def test_linked_targets_are_told_from_others(tmp_path: Path) -> None:
         ],
     )
     assert link_targets(tmp_path) == [
-        LinkTarget("a_plugin", "inner", tmp_path / "devel/a_plugin"),
-        LinkTarget("common", "face", tmp_path / "devel/common"),
+        LinkTarget("a_plugin", "inner", tmp_path / "devel/a_plugin", is_library=True),
+        LinkTarget("common", "face", tmp_path / "devel/common", is_library=True),
         LinkTarget("detector", "face", tmp_path / "devel/detector"),
     ]
     assert [unit.built for unit in link_targets(tmp_path) or ()] == [False, False, True]
@@ -59,17 +59,31 @@ def test_cmake_itself_answers(tmp_path: Path) -> None:
         "add_executable(node main.c)\nadd_executable(later EXCLUDE_FROM_ALL main.c)\n"
         "add_library(part STATIC main.c)\nadd_custom_target(doc)\n"
         "add_library(objects OBJECT main.c)\n"
-        "add_executable(of_objects $<TARGET_OBJECTS:objects>)\n",
+        "add_executable(of_objects $<TARGET_OBJECTS:objects>)\n"
+        "add_library(core SHARED ../source/main.c)\ntarget_link_libraries(node core)\n",
         encoding="utf-8",
     )
     (source / "main.c").write_text("int main(void) { return 0; }\n", encoding="utf-8")
     ask_for_targets(binary)
     subprocess.run(["cmake", "-S", source, "-B", binary], check=True, capture_output=True)
     subprocess.run(["cmake", "--build", binary], check=True, capture_output=True)
+    main = frozenset({source / "main.c"})
     assert link_targets(binary) == [
-        LinkTarget("later", "tiny", binary / "later", binary / "CMakeFiles/later.dir"),
-        LinkTarget("node", "tiny", binary / "node", binary / "CMakeFiles/node.dir"),
-        LinkTarget("of_objects", "tiny", binary / "of_objects"),
+        LinkTarget(
+            "core", "tiny", binary / "libcore.so", binary / "CMakeFiles/core.dir", True, main
+        ),
+        LinkTarget(
+            "later", "tiny", binary / "later", binary / "CMakeFiles/later.dir", sources=main
+        ),
+        LinkTarget(
+            "node",
+            "tiny",
+            binary / "node",
+            binary / "CMakeFiles/node.dir",
+            sources=main,
+            needs=frozenset({"core"}),
+        ),
+        LinkTarget("of_objects", "tiny", binary / "of_objects", needs=frozenset({"objects"})),
     ]
-    assert [unit.built for unit in link_targets(binary) or ()] == [False, True, True]
+    assert [unit.built for unit in link_targets(binary) or ()] == [True, False, True, True]
     assert (binary / "CMakeFiles/node.dir/main.c.o").is_file()

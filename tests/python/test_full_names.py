@@ -13,6 +13,7 @@ from tpc_file import TpcFile, header, name, report, site
 from pytpc.cli.main import main
 from pytpc.diagnosis.full_names import with_full_names
 from pytpc.ingest.reading import read
+from pytpc.recording.faults import unknown_keys
 from pytpc.recording.mission import ReadName, Recording, load_recording, save_recording
 from pytpc.static.link_unit import ParameterRead, Place
 from pytpc.static.static_info import StaticInfo
@@ -95,6 +96,8 @@ def test_an_older_name_that_is_not_set_is_left_out():
     given = static(new, old, elsewhere)
     found = with_full_names(given, told, {"/move_base/max_vel_trans": 0.5})
     assert list(found.comparisons) == [new.key, elsewhere.key]
+    # It is known all the same.
+    assert not unknown_keys(told.events, found)
     # Without the values of the server, and where neither is set, both stay.
     assert with_full_names(given, told, {}) is given
     assert with_full_names(given, told, {"/move_base/other": 1}) is given
