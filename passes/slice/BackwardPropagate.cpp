@@ -134,6 +134,9 @@ unsigned Slicer::addStep(Instruction *I, Why Because) {
 }
 
 void Slicer::enter(Instruction *I, unsigned char Reasons, Why Because) {
+  // What a lock or a reference count keeps is no value of the robot.
+  if (Because == Why::Writes && isCounting(*I))
+    return;
   unsigned char &Have = Seen[I];
   unsigned char New = (Reasons | Runs) & ~Have;
   if (!New)
