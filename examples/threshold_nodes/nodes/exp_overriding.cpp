@@ -25,7 +25,7 @@ struct Limits {
   double warn_above;
 };
 
-// A message that waits in roscpp's queue until roscpp finds it ready.
+// A message that waits in a queue of roscpp until roscpp finds it ready.
 class Waiting : public ros::CallbackInterface {
 public:
   Waiting(const Limits &limits, const ros::Publisher &pub, double value)
@@ -66,13 +66,15 @@ private:
   void onInput(const std_msgs::Float64::ConstPtr &msg) {
     if (counter_->enough(++count_))
       ROS_INFO("%d messages", count_);
-    ros::getGlobalCallbackQueue()->addCallback(
-        boost::make_shared<Waiting>(limits_, pub_, msg->data));
+    queue_.addCallback(boost::make_shared<Waiting>(limits_, pub_, msg->data));
+    while (!queue_.isEmpty())
+      queue_.callOne();
   }
 
   ros::NodeHandle nh_;
   ros::Publisher pub_;
   ros::Subscriber sub_;
+  ros::CallbackQueue queue_;
   boost::shared_ptr<Counter> counter_;
   Limits limits_;
   int count_ = 0;
