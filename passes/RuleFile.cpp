@@ -267,7 +267,8 @@ Error Reader::overriding(const json::Value &V, StringRef Place, RuleFile &Out) {
                         Key == "except" ? Out.KeptOverrides : Profiles))
       return E;
   }
-  Out.ShowsOverrides = belongs(Profiles);
+  // A user's file that only adds exceptions switches nothing on.
+  Out.ShowsOverrides = !Profiles.empty() && belongs(Profiles);
   return Error::success();
 }
 

@@ -82,7 +82,7 @@ void ClassHierarchy::addTable(const GlobalVariable &Variable) {
         Name = Info->getName();
         Begin = N + 1;
       }
-    int64_t Top = Entries->getNumOperands() < 2
+    int64_t Top = Begin < 2 || Entries->getNumOperands() < 2
                       ? 0
                       : asNumber(Entries->getOperand(Begin - 2));
     Group &G = Found.emplace_back(Group{-Top, {}});

@@ -177,6 +177,12 @@ bool Sides::isOtherWay(const ParameterComparison &C,
                              });
 }
 
+static const Value *stripCasts(const Value *V) {
+  while (const auto *Cast = dyn_cast<CastInst>(V))
+    V = Cast->getOperand(0);
+  return V;
+}
+
 bool Sides::isMeasured(const ParameterComparison &C,
                        const Instruction &Predicate) {
   if (!C.Compare)
@@ -192,10 +198,13 @@ bool Sides::isMeasured(const ParameterComparison &C,
   const bool AreBoth = any_of(Others, [&](const ParameterComparison *O) {
     return O->Operand != C.Operand && decides(*O, Predicate);
   });
-  // A formula that is compared with a constant was judged before. Most counters
-  // are configured too: they count up from a constant.
-  return (AreBoth || (isa<Constant>(Other) && !C.How.Variables)) &&
-         !isConfigured(Own) && isConfigured(Other);
+  // A value that was computed from the parameter alone is not measured,
+  // whatever library computed it. Most counters are configured too: they count
+  // up from a constant.
+  const bool IsPlain =
+      C.How.kind() == Transform::None && !isa<CallBase>(stripCasts(Own));
+  return (AreBoth || (isa<Constant>(Other) && IsPlain)) && !isConfigured(Own) &&
+         isConfigured(Other);
 }
 
 } // namespace tpc

@@ -119,7 +119,8 @@ private:
   SliceResult Result;
   DenseMap<const Instruction *, unsigned char> Seen;
   SmallPtrSet<const Value *, 16> SeenArguments;
-  SmallPtrSet<const Value *, 16> SeenPointers;
+  /// Without and with the functions that get the pointer.
+  SmallPtrSet<const Value *, 16> SeenPointers[2];
   /// Writes of what an exposing statement shows that have been decided.
   SmallPtrSet<const Instruction *, 16> Settled;
   SmallVector<Item, 0> Next; ///< the items of the next round
@@ -306,7 +307,7 @@ void Slicer::enterThrowers(CallBase &Call) {
 /// What is written through \p Pointer and what is computed from it matters,
 /// with \p IntoCallees also in the functions that get it.
 void Slicer::enterDerived(const Value *Pointer, bool IntoCallees) {
-  if (!SeenPointers.insert(Pointer).second)
+  if (!SeenPointers[IntoCallees].insert(Pointer).second)
     return;
   for (const Use &U : Pointer->uses()) {
     auto *I = dyn_cast<Instruction>(U.getUser());

@@ -71,7 +71,7 @@ static std::string topicOf(const Value *Object, ArrayRef<NamedObject> Named,
 
 /// Adds what \p F, which overrides a function of another library, gives back.
 static void addGivenBack(Function &F, ExternCallFinder::Result &Out) {
-  std::string Name = qualifiedName(F.getName());
+  std::string Name = qualifiedName(linkageName(F));
   auto Add = [&](ReturnInst &At, const Argument *Arg) {
     std::string What =
         Arg && !Arg->hasStructRetAttr() ? localName(*Arg, F) : "";
@@ -117,7 +117,7 @@ ExternCallFinder::Result ExternCallFinder::run(Module &M,
   for (Function *F : Overriding)
     addGivenBack(*F, R);
   for (InheritedWrite &W : inheritedWrites(M, Overriding)) {
-    std::string Name = qualifiedName(W.I->getFunction()->getName());
+    std::string Name = qualifiedName(linkageName(*W.I->getFunction()));
     std::string Topic = (unscoped(Name) + " -> " + W.Class).str();
     R.push_back({W.I, std::move(Name), std::move(Topic)});
   }

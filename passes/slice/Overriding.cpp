@@ -45,7 +45,9 @@ public:
   Function *overriding(const VirtualFunction &V);
 
 private:
-  bool overrides(const Function &F, unsigned Slot, StringRef Base);
+  bool isOthers(const Function &F) const;
+  bool overrides(const Function &F, unsigned Slot, StringRef Base,
+                 bool IsCalled);
   bool isElsewhere(const DICompositeType &Base, const Function &F);
   bool isCalledThroughClass(const Function &F) const;
 
@@ -83,7 +85,7 @@ static const DICompositeType *findBase(const DICompositeType &Class,
                                        StringRef Name) {
   for (const DINode *N : Class.getElements())
     if (const DICompositeType *Base = baseClass(N)) {
-      if (StringRef(DebugTypes::identifierOf(*Base)).drop_front(4) == Name)
+      if (DebugTypes::identifierOf(*Base) == ("_ZTS" + Name).str())
         return Base;
       if (const DICompositeType *Further = findBase(*Base, Name))
         return Further;
@@ -110,6 +112,18 @@ bool Finder::isCalledThroughClass(const Function &F) const {
   });
 }
 
+/// True if \p F is an inline function of a class of another library.
+bool Finder::isOthers(const Function &F) const {
+  const auto *Class =
+      dyn_cast_or_null<DICompositeType>(F.getSubprogram()->getScope());
+  std::string Name = Class ? DebugTypes::identifierOf(*Class) : "";
+  if (!StringRef(Name).starts_with("_ZTS"))
+    return false;
+  Name[3] = 'I';
+  const GlobalVariable *Info = M.getNamedGlobal(Name);
+  return Info && Info->isDeclaration();
+}
+
 /// True if the header of \p Base belongs to somebody else than \p F.
 bool Finder::isElsewhere(const DICompositeType &Base, const Function &F) {
   std::string Header = pathOf(Base.getFile());
@@ -118,8 +132,10 @@ bool Finder::isElsewhere(const DICompositeType &Base, const Function &F) {
 }
 
 /// True if \p F, in \p Slot of a vtable, overrides a function of \p Base, a
-/// class of another library.
-bool Finder::overrides(const Function &F, unsigned Slot, StringRef Base) {
+/// class of another library. \p IsCalled says whether a call through a class
+/// enters it in this unit.
+bool Finder::overrides(const Function &F, unsigned Slot, StringRef Base,
+                       bool IsCalled) {
   if (Rules.keepsOverrides(Base))
     return false;
   const auto *Class =
@@ -132,19 +148,23 @@ bool Finder::overrides(const Function &F, unsigned Slot, StringRef Base) {
   if (Info && Info->isDeclaration())
     // Without the members of the class, what this unit calls through a class of
     // its own may be new in that.
-    return Declared || !isCalledThroughClass(F);
+    return Declared || !IsCalled;
   if (Known && isElsewhere(*Known, F))
     return true;
-  return Opts.SharedLibrary && Declared && !isCalledThroughClass(F);
+  return Opts.SharedLibrary && Declared && !IsCalled;
 }
 
 Function *Finder::overriding(const VirtualFunction &V) {
   Function *F = behindThunk(V.F);
   if (!F || F->isDeclaration() || !Sources.has(*F) || Rules.isOpaque(*F) ||
-      F->getSubprogram()->getName().starts_with("~"))
+      F->getSubprogram()->getName().starts_with("~") || isOthers(*F))
     return nullptr;
+  // Calls through the second base of a class enter the thunk.
+  const bool IsCalled = isCalledThroughClass(*F) || isCalledThroughClass(*V.F);
   return any_of(V.Bases,
-                [&](StringRef Base) { return overrides(*F, V.Slot, Base); })
+                [&](StringRef Base) {
+                  return overrides(*F, V.Slot, Base, IsCalled);
+                })
              ? F
              : nullptr;
 }
@@ -167,15 +187,16 @@ SmallSetVector<Function *, 8> overridingFunctions(Module &M,
 SmallVector<const Argument *, 4> writtenArguments(const Function &F) {
   SmallVector<const Argument *, 4> Written;
   SmallVector<std::string, 4> Types = parameterTypes(F);
-  const SmallBitVector Const = constArguments(F);
-  // If an argument is not one in the code, no type is known.
-  const size_t First = F.arg_size() - std::min(F.arg_size(), Types.size());
+  // If a parameter is not one argument in the code, no type is known.
+  size_t First = (F.hasStructRetAttr() ? 1 : 0) + 1; // the result, `this`
+  if (First + Types.size() != F.arg_size())
+    First = F.arg_size();
   for (const Argument &Arg : F.args()) {
     const unsigned N = Arg.getArgNo();
     StringRef Type = N < First ? "" : StringRef(Types[N - First]);
     bool IsHanded = Type.ends_with("&") || Type.ends_with("*");
     if (Arg.getType()->isPointerTy() &&
-        (Arg.hasStructRetAttr() || (IsHanded && !Const.test(N))))
+        (Arg.hasStructRetAttr() || (IsHanded && !takesConst(Type))))
       Written.push_back(&Arg);
   }
   return Written;
@@ -200,7 +221,7 @@ public:
   }
 
   static std::string scopeOf(const Function &F) {
-    return StringRef(qualifiedName(F.getName())).rsplit("::").first.str();
+    return StringRef(qualifiedName(linkageName(F))).rsplit("::").first.str();
   }
   bool has(StringRef Class) const { return Names.contains(Class); }
 
@@ -210,12 +231,24 @@ private:
 
 } // namespace
 
-/// The class of another library in whose part of `this`, the object of \p F,
+/// `this` of \p F; null if it has none, as in a static method.
+static const Argument *objectOf(const Function &F) {
+  const DISubprogram *SP = F.getSubprogram();
+  const unsigned N = F.hasStructRetAttr() ? 1 : 0;
+  if (!SP || !SP->getType() || N >= F.arg_size())
+    return nullptr;
+  // Before the parameters stands the result.
+  DITypeRefArray Types = SP->getType()->getTypeArray();
+  const bool HasObject =
+      Types.size() > 1 && Types[1] && Types[1]->isArtificial();
+  return HasObject ? F.getArg(N) : nullptr;
+}
+
+/// The class of another library in whose part of the object \p This
 /// \p Pointer lies, or in an array that this part points to; empty if it lies
 /// elsewhere.
-static std::string inheritedPart(const Value *Pointer, const Function &F,
+static std::string inheritedPart(const Value *Pointer, const Argument *This,
                                  const OwnClasses &Own) {
-  const Value *This = F.getArg(F.hasStructRetAttr() ? 1 : 0);
   // The outermost field is the one nearest to `this`.
   StructType *Outermost = nullptr;
   constexpr unsigned MostSteps = 16;
@@ -239,7 +272,7 @@ static std::string inheritedPart(const Value *Pointer, const Function &F,
 
 /// The same for the object on which \p Call calls a method of another library
 /// that is not const.
-static std::string inheritedObject(const CallBase &Call, const Function &F,
+static std::string inheritedObject(const CallBase &Call, const Argument *This,
                                    const OwnClasses &Own) {
   const Function *Callee = Call.getCalledFunction();
   if (!Callee || !Callee->isDeclaration() || endsLife(Call) ||
@@ -247,7 +280,8 @@ static std::string inheritedObject(const CallBase &Call, const Function &F,
       Callee->getName().starts_with("_ZNK"))
     return "";
   const unsigned First = Callee->hasStructRetAttr() ? 1 : 0;
-  if (Call.arg_size() <= First)
+  // A method has its object before what it is written with.
+  if (Call.arg_size() <= First + parameterTypes(*Callee).size())
     return "";
   const Value *Object = Call.getArgOperand(First);
   // A base that is not at the beginning is some bytes further on.
@@ -257,7 +291,7 @@ static std::string inheritedObject(const CallBase &Call, const Function &F,
     Object = GEP->getPointerOperand();
   }
   std::string Class = OwnClasses::scopeOf(*Callee);
-  if (Object != F.getArg(F.hasStructRetAttr() ? 1 : 0) || Own.has(Class))
+  if (Object != This || Own.has(Class))
     return "";
   return Class;
 }
@@ -275,15 +309,16 @@ inheritedWrites(Module &M, const SmallSetVector<Function *, 8> &Overriding) {
     const std::string Class = OwnClasses::scopeOf(F);
     StringRef Method = F.getSubprogram() ? F.getSubprogram()->getName() : "";
     // What a constructor sets is not seen before it ends.
-    if (!Derived.contains(Class) || F.arg_empty() || Method.empty() ||
+    const Argument *This = objectOf(F);
+    if (!This || !Derived.contains(Class) || Method.empty() ||
         Method.starts_with("~") || Method == unscoped(Class))
       continue;
     for (Instruction &I : instructions(F)) {
       std::string Part;
       if (const auto *Store = dyn_cast<StoreInst>(&I))
-        Part = inheritedPart(Store->getPointerOperand(), F, Own);
+        Part = inheritedPart(Store->getPointerOperand(), This, Own);
       else if (const auto *Call = dyn_cast<CallBase>(&I))
-        Part = inheritedObject(*Call, F, Own);
+        Part = inheritedObject(*Call, This, Own);
       if (!Part.empty())
         Found.push_back({&I, unscoped(Part).str()});
     }

@@ -52,9 +52,7 @@ std::string qualifiedName(StringRef Mangled) {
   return withoutTemplateArguments(Scope.empty() ? Base : Scope + "::" + Base);
 }
 
-/// The mangled name of \p F in the source. The debug information keeps that of
-/// a function that was cloned.
-static StringRef linkageName(const Function &F) {
+StringRef linkageName(const Function &F) {
   const DISubprogram *SP = F.getSubprogram();
   StringRef Linkage = SP ? SP->getLinkageName() : "";
   return Linkage.empty() ? F.getName() : Linkage;
@@ -195,7 +193,7 @@ static bool isOneArgument(StringRef Type) {
          is_contained(Scalars, Type);
 }
 
-static bool isConstTarget(StringRef Type) {
+bool takesConst(StringRef Type) {
   if (!Type.consume_back(" const&") && !Type.consume_back(" const*"))
     return false;
   bool LeadsElsewhere = Type.contains('*') || Type.contains("_ptr<") ||
@@ -213,7 +211,7 @@ SmallBitVector constArguments(const Function &F) {
   // An argument that is a class may be none, one or two in the code.
   if (First + Types.size() == F.arg_size() && all_of(Types, isOneArgument))
     for (const auto &[N, Type] : enumerate(Types))
-      if (isConstTarget(Type))
+      if (takesConst(Type))
         Const.set(First + N);
   return Const;
 }

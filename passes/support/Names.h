@@ -12,6 +12,10 @@
 
 namespace tpc {
 
+/// The mangled name of \p F in the source: a copy of a function has a name of
+/// its own in the code.
+llvm::StringRef linkageName(const llvm::Function &F);
+
 /// The demangled name of \p Mangled with its scopes, without parameters and
 /// template arguments: `ros::NodeHandle::param`. Returns a name that is not
 /// mangled unchanged.
@@ -50,6 +54,11 @@ std::string classArgument(const llvm::Function &F);
 /// The type of \p F's result: from its mangled name (only templates have it
 /// there), otherwise from the code; empty for an object.
 std::string resultType(const llvm::Function &F);
+
+/// True if \p Type, as parameterTypes returns it, is `T const &` or `T const
+/// *`; what pointers inside of T lead to may change, so not for classes of
+/// pointers.
+bool takesConst(llvm::StringRef Type);
 
 /// The arguments that \p F, by the types in its mangled name, leaves unchanged:
 /// those that it takes as `T const &` or `T const *`. What pointers inside of

@@ -98,8 +98,8 @@ def tell_left_out(static: StaticInfo) -> None:
     for doubled in static.doubled:
         text = (
             f"{doubled.package}/{doubled.link_unit}: {many(doubled.comparisons, 'comparison')} in"
-            f" {doubled.file} may not report: {doubled.runs} has the file, too, and a process with"
-            " both runs that one's functions"
+            f" {doubled.file} may not report: {doubled.runs} has the file, too, and a process that"
+            " loads that first runs its functions"
         )
         click.echo(plain(text), err=True)
 

@@ -105,9 +105,10 @@ class LeftOut:
 
 @dataclass(frozen=True, slots=True)
 class Doubled:
-    """A source file that is also linked into ``runs``, whose functions are the ones that run.
+    """A source file that is also linked into ``runs``, which ``link_unit`` or a program needs.
 
-    ``comparisons`` of ``link_unit`` in ``file`` (absolute) do not report in a process of both.
+    ``comparisons`` of ``link_unit`` in ``file`` (absolute) do not report in a process that has
+    loaded ``runs`` before.
     """
 
     package: str

@@ -73,5 +73,5 @@ def test_it_is_kept_and_said(tmp_path, capsys):
     tell_left_out(StaticInfo.load(tmp_path / "static.json"))
     assert capsys.readouterr().err == (
         "face/layers: 2 comparisons in /ws/src/buffer.cpp may not report: core has the file, too,"
-        " and a process with both runs that one's functions\n"
+        " and a process that loads that first runs its functions\n"
     )

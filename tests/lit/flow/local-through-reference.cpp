@@ -14,10 +14,10 @@ void step(ros::NodeHandle &Handle, ros::Publisher &Out, double V, double W) {
   if (W > std::clamp(V, 0.5, 10.0))
     Out.publish(std_msgs::Number());
   Handle.getParam("limit", V);
-  // Not the comparison of std::clamp with 0.5: what it compares may be what
-  // touch() left there.
-  // CHECK: comparisons of {{.*}}: 2
-  // CHECK-DAG: parameter 'limit' relation > {{.*}} at [[#@LINE+2]]:11
+  // The two comparisons of std::clamp, and the one with its result.
+  // CHECK: comparisons of {{.*}}: 3
+  // CHECK-DAG: parameter 'limit' relation > {{.*}} at [[#@LINE+3]]:11
+  // CHECK-DAG: derived 'limit' relation < {{.*}} at [[#@LINE+2]]:11
   // CHECK-DAG: derived 'limit' relation > {{.*}} at [[#@LINE+1]]:9
   if (W > std::clamp(V, 0.5, 10.0))
     Out.publish(std_msgs::Number());

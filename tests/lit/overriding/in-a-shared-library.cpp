@@ -5,7 +5,8 @@
 // RUN: FileCheck %s --check-prefix=PART < %t.json
 //
 // An interface of the own package: in a shared library, whoever loads it calls
-// what nothing in it calls. What is called in the library counts as its own.
+// what nothing in it calls. What is called in it, here by a thunk, counts as its
+// own.
 #include <ros/ros.h>
 
 static double Far, Inner;
@@ -16,10 +17,14 @@ struct Shape {
   virtual bool touches(double Value) = 0;
 };
 
+struct Named {
+  virtual ~Named() = default;
+};
+
 // CHECK-DAG: "topic": "holds -> result"
 // CHECK-NOT: touches -> result
 // PART-NOT: holds -> result
-struct Circle : Shape {
+struct Circle : Named, Shape {
   bool holds(double Value) override { return Value < Far; }
   bool touches(double Value) override { return Value < Inner; }
 };
