@@ -224,7 +224,7 @@ void ClassHierarchy::forEachFunction(
       addBasesAt(C, G.Offset, Bases);
       for (const auto &[Slot, F] : enumerate(G.Functions))
         if (F)
-          Fn({C.Name, F, static_cast<unsigned>(Slot), Bases});
+          Fn({F, static_cast<unsigned>(Slot), Bases});
     }
 }
 

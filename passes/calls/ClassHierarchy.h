@@ -24,10 +24,9 @@
 
 namespace tpc {
 
-/// A function in the vtable of a class, and the base classes through which a
-/// call of this slot enters it. Classes have their mangled names.
+/// A function in a vtable, and the base classes, by their mangled names, through
+/// which a call of this slot enters it.
 struct VirtualFunction {
-  llvm::StringRef Class;
   llvm::Function *F;
   unsigned Slot;
   llvm::ArrayRef<llvm::StringRef> Bases;
