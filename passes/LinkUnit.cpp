@@ -17,6 +17,7 @@
 #include "params/ParamCallFinder.h"
 #include "params/ParamUsageFinder.h"
 #include "results/GatherResults.h"
+#include "results/LoopDepths.h"
 #include "slice/BackwardPropagate.h"
 #include "slice/ExternCallFinder.h"
 #include "support/Budget.h"
@@ -50,6 +51,7 @@ void registerAnalyses(ModuleAnalysisManager &AM) {
   AM.registerPass([] { return BackwardPropagate(); });
   AM.registerPass([] { return ParamUsageFinder(); });
   AM.registerPass([] { return GatherResults(); });
+  AM.registerPass([] { return LoopDepths(); });
 }
 
 /// The result of analysing a link unit.
@@ -70,13 +72,17 @@ namespace {
 struct OwnAnalyses {
   PassInstrumentationCallbacks Callbacks;
   TimePassesHandler Times; ///< for `-time-passes`
+  FunctionAnalysisManager FAM;
   ModuleAnalysisManager AM;
   OwnAnalyses(const Options &Opts, const RuleTables &Rules) {
     Times.registerCallbacks(Callbacks);
     AM.registerPass([&] { return OptionsAnalysis(Opts); });
     AM.registerPass([&] { return RuleTableAnalysis(Rules); });
-    PassBuilder(nullptr, PipelineTuningOptions(), std::nullopt, &Callbacks)
-        .registerModuleAnalyses(AM);
+    PassBuilder PB(nullptr, PipelineTuningOptions(), std::nullopt, &Callbacks);
+    PB.registerModuleAnalyses(AM);
+    PB.registerFunctionAnalyses(FAM);
+    AM.registerPass([&] { return FunctionAnalysisManagerModuleProxy(FAM); });
+    FAM.registerPass([&] { return ModuleAnalysisManagerFunctionProxy(AM); });
     registerAnalyses(AM);
   }
 };

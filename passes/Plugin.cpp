@@ -16,6 +16,7 @@
 #include "params/ParamCallFinder.h"
 #include "params/ParamUsageFinder.h"
 #include "results/GatherResults.h"
+#include "results/LoopDepths.h"
 #include "slice/BackwardPropagate.h"
 #include "slice/ExternCallFinder.h"
 #include "support/Compat.h"
@@ -40,6 +41,7 @@ static bool addPass(StringRef Name, ModulePassManager &MPM,
   PRINTER("tpc-backward-propagate", BackwardPropagatePrinter)
   PRINTER("tpc-param-usage", ParamUsageFinderPrinter)
   PRINTER("tpc-gather-results", GatherResultsPrinter)
+  PRINTER("tpc-loop-depths", LoopDepthsPrinter)
   PRINTER("tpc-instrument-branches", InstrumentBranchesPrinter)
 #undef PRINTER
   if (Name == "tpc-prepare") {

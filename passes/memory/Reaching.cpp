@@ -30,14 +30,11 @@ static cl::opt<unsigned>
 /// True for functions without a body in which other threads or callbacks may
 /// run.
 static bool letsOthersRun(const Function &F) {
-  std::string Name = StringRef(qualifiedName(F.getName())).lower();
-  StringRef Last = StringRef(Name).rsplit(':').second;
-  if (Last.empty())
-    Last = Name;
-  static constexpr StringRef Words[] = {"sleep", "wait",  "spin",
-                                        "join",  "yield", "callavailable"};
+  if (waitsByName(F))
+    return true;
+  std::string Lower = unscoped(qualifiedName(F.getName())).lower();
+  StringRef Last = Lower;
   return Last == "call" || Last == "callone" ||
-         any_of(Words, [&](StringRef Word) { return Last.contains(Word); }) ||
          (Last.ends_with("lock") && !Last.ends_with("clock") &&
           !Last.ends_with("block"));
 }

@@ -8,6 +8,7 @@
 #include "output/ExplainInfo.h"
 #include "params/ParamCallFinder.h"
 #include "params/Texts.h"
+#include "results/LoopDepths.h"
 #include "slice/ExternCallFinder.h"
 #include "support/Functions.h"
 #include "support/Names.h"
@@ -50,6 +51,7 @@ public:
         Usage(AM.getResult<ParamUsageFinder>(M)),
         Slice(AM.getResult<BackwardPropagate>(M)),
         Gathered(AM.getResult<GatherResults>(M)),
+        Loops(AM.getResult<LoopDepths>(M)),
         Names(AM.getResult<LocationTypesAnalysis>(M)), Explain(M, AM, Opts) {}
 
   json::Array parameters() const;
@@ -79,6 +81,7 @@ private:
   const ParameterUsage &Usage;
   const SliceResult &Slice;
   const GatheredResults &Gathered;
+  const LoopDepthsResult &Loops;
   VariableNames Names;
   ExplainInfo Explain;
   SourceLines Lines;
@@ -184,17 +187,21 @@ json::Object Describer::comparison(const SourcePlace &P) {
       C.Reads.empty() ? nullptr : &Reads[C.Reads.front()];
   const ExposingStatement &Nearest = Exposing[C.Slice.Exposing];
   json::Array ReadPlaces;
-  for (const Comparison *Instance : P.Instances)
+  unsigned Depth = 0;
+  for (const Comparison *Instance : P.Instances) {
+    Depth = std::max(Depth, Loops.of(*Instance));
     for (unsigned N : Instance->Reads)
       if (json::Value Place = where(*Reads[N].Call);
           !is_contained(ReadPlaces, Place))
         ReadPlaces.push_back(std::move(Place));
+  }
   json::Object O = placed(C.Where, *C.place().getFunction());
   O["key"] = C.Key;
   O["type"] = C.typeName();
   O["name"] = textOrNull(variable(C));
   O["source"] = Read ? json::Value(P.Source) : nullptr;
   O["distance"] = C.Slice.Distance;
+  O["loop_depth"] = Depth;
   O["relation"] = C.relation();
   O["topic"] = textOrNull(Nearest.Topic);
   O["source_code"] = Lines.line(pathOf(C.Where), C.Where->getLine());

@@ -229,6 +229,14 @@ bool givesMemoryBack(StringRef Mangled) {
          Mangled.starts_with("_ZdaPv");
 }
 
+bool waitsByName(const Function &F) {
+  static constexpr StringRef Words[] = {"sleep", "wait",  "spin",
+                                        "join",  "yield", "callavailable"};
+  std::string Last = unscoped(qualifiedName(F.getName())).lower();
+  return any_of(Words,
+                [&](StringRef W) { return StringRef(Last).contains(W); });
+}
+
 bool endsLife(const CallBase &Call) {
   const Function *F = Call.getCalledFunction();
   return F && F->isDeclaration() &&

@@ -75,6 +75,10 @@ inline constexpr llvm::StringLiteral PutName = "_ZN3tpc4Held3putEd";
 /// True for the mangled names of the functions that free memory.
 bool givesMemoryBack(llvm::StringRef Mangled);
 
+/// True if the name of \p F, without its scopes, says that the thread waits in
+/// it: for a time, for another thread, or for callbacks that it runs.
+bool waitsByName(const llvm::Function &F);
+
 /// True if \p Call calls a function without a body that ends the life of its
 /// argument: nobody reads what it writes there.
 bool endsLife(const llvm::CallBase &Call);

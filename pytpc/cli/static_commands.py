@@ -30,6 +30,7 @@ from pytpc.cli.console import (
     print_json,
     progress,
     show_units,
+    tell_inner_loops,
     warn_of_failed,
 )
 from pytpc.cli.explain_commands import print_why_not
@@ -80,6 +81,7 @@ def collect_command(
     show_units(collected.static)
     tell_dropped(collected.dropped)
     click.echo(f"{found_text(collected.static)}: {output}")
+    tell_inner_loops(collected.static)
 
 
 @click.command("show")
@@ -201,6 +203,8 @@ def _facts(each: Details) -> list[tuple[str, Text]]:
         ("Function", each.nearest.function),
         ("Distance", str(tpc.distance)),
     ]
+    if each.loop_depth:
+        facts.append(("Inner loops", str(each.loop_depth)))
     if each.nearest.other_thresholds:
         others = many(each.nearest.other_thresholds, "other comparison")
         facts.append(("Beside it", f"{others} with parameters in this condition"))

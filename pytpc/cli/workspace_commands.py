@@ -13,7 +13,7 @@ from rich.text import Text
 
 from pytpc.api.building import BuildOptions, BuildResult, build
 from pytpc.cli.arguments import CONSTANTS, NO_PYTHON, PATH, PYTHON_RULES, RULES, as_object
-from pytpc.cli.console import Advance, found_text, progress, show_units, warn
+from pytpc.cli.console import Advance, found_text, progress, show_units, tell_inner_loops, warn
 from pytpc.workspace import patch
 from pytpc.workspace.colcon import Bases, BuildError
 
@@ -177,3 +177,4 @@ def _show_build(result: BuildResult) -> None:
     click.echo(
         f"{found_text(result.static)}, built in {result.seconds:.1f} s: {result.bases.static_info}"
     )
+    tell_inner_loops(result.static)

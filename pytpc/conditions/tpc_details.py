@@ -10,6 +10,7 @@ from pytpc.base.wording import exact
 from pytpc.conditions.cpp_conditions import Condition
 from pytpc.conditions.lookup import Answer
 from pytpc.static.link_unit import Comparison, Default, LinkUnit, Transform
+from pytpc.static.loops import loop_depth
 from pytpc.static.places import Tpc
 from pytpc.static.static_info import StaticInfo
 
@@ -31,6 +32,7 @@ class Details:
     ``nearest`` is the comparison with the smallest distance. ``defaults``, ``reads``
     (``FILE:LINE``) and ``exposed`` have several entries if the link units differ. ``condition`` is
     None where only the source line is known; ``note`` says why, or what else to mind.
+    ``loop_depth`` is the largest of the link units; None if none knows it.
     """
 
     tpc: Tpc
@@ -41,6 +43,7 @@ class Details:
     exposed: tuple[ExposedDetails, ...]
     condition: Condition | None
     note: str
+    loop_depth: int | None = None
 
     @property
     def title(self) -> str:
@@ -79,6 +82,7 @@ class Details:
             if self.nearest.transform is None
             else self.nearest.transform.to_json(),
             "other_thresholds": self.nearest.other_thresholds,
+            "loop_depth": self.loop_depth,
             "defaults": self.defaults,
             "reads": self.reads,
             "exposed": [asdict(each) for each in self.exposed],
@@ -104,6 +108,7 @@ def details(static: StaticInfo, tpc: Tpc, answer: Answer) -> Details:
         ),
         condition=answer.condition,
         note=answer.note,
+        loop_depth=loop_depth(static, tpc),
     )
 
 

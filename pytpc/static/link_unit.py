@@ -148,7 +148,8 @@ class BlindSpot:
 class Comparison:
     """One threshold predicate comparison (docs/reference/formats.md#a-comparison).
 
-    The last three are known for Python only.
+    ``loop_depth`` is known for C++ only, and not from older files; the three before it are known
+    for Python only.
     """
 
     key: str
@@ -174,6 +175,7 @@ class Comparison:
     end_lineno: int | None = None
     end_column: int | None = None
     operand: str | None = None
+    loop_depth: int | None = None
 
     def to_json(self) -> dict[str, Any]:
         """The comparison as JSON (docs/reference/formats.md#a-comparison)."""
@@ -304,7 +306,7 @@ def _comparison(data: dict[str, Any]) -> Comparison:
 # Fields that only one half of TPC writes, or only one kind of transform has.
 _OPTIONAL = frozenset(
     {"analysis", "end_lineno", "end_column", "key", "operand", "script", "build_folder"}
-    | {"scale", "offset", "tree"}
+    | {"loop_depth", "scale", "offset", "tree"}
 )
 
 

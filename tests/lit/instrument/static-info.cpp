@@ -11,7 +11,8 @@
 // CHECK: "file": "static-info.cpp",
 // CHECK: "function": "step(ros::NodeHandle&, double)",
 // CHECK-NEXT: "key": "{{[0-9a-f]+-[0-9a-f]+-5[0-9a-f]+-[89ab][0-9a-f]+-[0-9a-f]+}}",
-// CHECK-NEXT: "lineno": [[#@LINE+25]],
+// CHECK-NEXT: "lineno": [[#@LINE+26]],
+// CHECK-NEXT: "loop_depth": 0,
 // CHECK-NEXT: "name": "Limit",
 // CHECK-NEXT: "other_thresholds": 0,
 // CHECK: "read_at": {
