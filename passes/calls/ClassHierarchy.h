@@ -24,8 +24,8 @@
 
 namespace tpc {
 
-/// A function in a vtable, and the base classes, by their mangled names, through
-/// which a call of this slot enters it.
+/// A function in a vtable, and the base classes, by their mangled names,
+/// through which a call of this slot enters it.
 struct VirtualFunction {
   llvm::Function *F;
   unsigned Slot;
