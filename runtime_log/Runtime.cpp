@@ -266,21 +266,26 @@ std::string Runtime::status() {
 //===----------------------------------------------------------------------===//
 
 void Runtime::startHelper() {
-  // Signals are for the program's own threads.
-  sigset_t All, Old;
+  // Signals are for the program's own threads. They are not blocked here in
+  // this thread, even for a moment: a signal that comes then goes to another
+  // one, and if a handler that calls ros::shutdown() runs in roscpp's own
+  // threads, the node aborts.
+  sigset_t All;
   sigfillset(&All);
-  pthread_sigmask(SIG_SETMASK, &All, &Old);
+  pthread_attr_t Attributes;
+  pthread_attr_init(&Attributes);
+  pthread_attr_setsigmask_np(&Attributes, &All);
   auto Body = [](void *) -> void * {
     of().help();
     return nullptr;
   };
-  HelperRuns = !pthread_create(&Helper, nullptr, Body, nullptr);
+  HelperRuns = !pthread_create(&Helper, &Attributes, Body, nullptr);
   if (HelperRuns)
     pthread_setname_np(Helper, "tpc");
   else
     warn("cannot start a thread: settings cannot be changed while the program "
          "runs, and summaries are written when it ends");
-  pthread_sigmask(SIG_SETMASK, &Old, nullptr);
+  pthread_attr_destroy(&Attributes);
 }
 
 void Runtime::wake() {

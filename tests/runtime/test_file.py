@@ -302,6 +302,23 @@ def test_a_fork_while_the_kernel_is_asked_for_its_clock(drive_with, files):
     assert [log_file.read(path).state for path in files()] == [1, 1, 1]
 
 
+# A signal that comes while it is blocked here would go to a thread of roscpp, and there a handler
+# that calls ros::shutdown() ends the node with an exception.
+def test_a_thread_that_reports_blocks_no_signals(drive_with, files):
+    drive_with(
+        """
+        #include <signal.h>
+        #include <stdlib.h>
+        extern "C" int pthread_sigmask(int, const sigset_t *, sigset_t *) { abort(); }
+        """,
+        "threads",
+        "1",
+        "3",
+        "10",
+    )
+    assert len(log_file.read(files()[0]).all_reports) == 10
+
+
 # The library's only call of clock_gettime is what the preloaded one answers.
 def test_the_wall_clock_is_set_back(drive_with, files):
     drive_with(
