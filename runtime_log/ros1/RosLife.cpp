@@ -21,12 +21,14 @@ namespace tpc {
 static constexpr auto EndPatience = std::chrono::milliseconds(500);
 static constexpr int64_t StartNs = 10'000'000;
 static constexpr auto Moment = std::chrono::milliseconds(1);
+static constexpr std::chrono::seconds Silence{5};
 
 static std::atomic<int> Users{0};
 static std::atomic<bool> Over{false};
 static std::atomic<bool> Up{false};
 static std::atomic<int64_t> StartedAt{0};
 static std::atomic<bool> Asking{false};
+static std::atomic<std::chrono::steady_clock::rep> AskedAt{0};
 static std::atomic<bool> Forked{false};
 
 static void inChild() {
@@ -94,9 +96,25 @@ bool rosIsUp() {
   return Up;
 }
 
+/// A master that takes the question and never answers, such as a stopped one,
+/// is no error to roscpp.
+static void warnOfSilence() {
+  static std::atomic<bool> Said{false};
+  const auto Since =
+      std::chrono::steady_clock::now().time_since_epoch().count() - AskedAt;
+  if (Since > std::chrono::nanoseconds(Silence).count() && !Said.exchange(true))
+    warn("the ROS master has not answered for " +
+         std::to_string(Silence.count()) +
+         " s: until it does, its parameters are not read, and topics that are "
+         "not advertised yet get no reports");
+}
+
 bool askMaster(std::function<void()> Job) {
-  if (Asking.exchange(true))
+  if (Asking.exchange(true)) {
+    warnOfSilence();
     return false;
+  }
+  AskedAt = std::chrono::steady_clock::now().time_since_epoch().count();
   // The signals of a node are for the node's own threads.
   sigset_t All, Before;
   sigfillset(&All);
