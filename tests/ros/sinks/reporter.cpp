@@ -1,6 +1,6 @@
-// A node that reports at a given rate. It stops when its time is up or when it
-// is told to, and then says on standard output how many reports it made:
-// `made before=N running=N after=N`.
+// A node that reports at a given rate, and says `ready` before. It stops when
+// its time is up or when it is told to, and then says on standard output how
+// many reports it made: `made before=N running=N after=N`.
 //
 // reporter --before=N --rate=N --seconds=S --threads=N --after=N --fork=N
 //          --fork-wait=S --wait=S --stay=S --shutdown=0|1 --flops=0|1
@@ -96,6 +96,8 @@ int main(int Count, char **Words) {
     // For subscribers to come: /rosout loses what is said before.
     std::this_thread::sleep_for(
         std::chrono::duration<double>(Option("wait", 0)));
+    std::puts("ready");
+    std::fflush(stdout);
     std::vector<std::thread> Threads;
     const int Number = static_cast<int>(Option("threads", 1));
     for (int I = 0; I < Number; ++I)
