@@ -6,6 +6,7 @@
 //===----------------------------------------------------------------------===//
 #include "LogOne.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -226,21 +227,27 @@ int exits(const Arguments &) {
 }
 
 /// together THREADS SITES: so many threads begin at once, and each evaluates
-/// each site once.
+/// each site once. Prints how long this took the slowest one, in milliseconds.
 int together(const Arguments &A) {
+  using Clock = std::chrono::steady_clock;
   Keys K(std::stoul(A[1]));
   std::atomic<bool> Begun{false};
   std::vector<std::thread> All;
-  for (unsigned long T = std::stoul(A[0]); T; --T)
+  std::vector<double> Took(std::stoul(A[0]));
+  for (double &Ms : Took)
     All.emplace_back([&] {
       while (!Begun)
         std::this_thread::yield();
+      const auto Start = Clock::now();
       for (unsigned long I = 0; I < std::stoul(A[1]); ++I)
         report(K[I], 0, 0);
+      Ms = std::chrono::duration<double, std::milli>(Clock::now() - Start)
+               .count();
     });
   Begun = true;
   for (std::thread &T : All)
     T.join();
+  std::printf("%.3f\n", *std::max_element(Took.begin(), Took.end()));
   return 0;
 }
 
