@@ -102,6 +102,9 @@ class Follower:
         for to, via, stack in self.flow.moves(fact.at, fact.stack):
             if to.op == "attr" and self.flow.is_by_unknown_name(to, via):
                 continue
+            if fact.how.others and not _keeps_formula(fact, to, via):
+                self._lose(fact, via or to)
+                continue
             if via is not None and (fact.at, via) in self.flow.points.spread:
                 self._entry(fact, to)
                 continue
@@ -122,6 +125,9 @@ class Follower:
             self._on(fact, to, None)
 
     def _use(self, fact: Fact, user: Instr) -> None:
+        if fact.how.others and user.op in ("branch", "match", "item", "iter"):
+            self._lose(fact, user)
+            return
         match user.op:
             case "compare":
                 for operand in (0, 1):
@@ -157,7 +163,7 @@ class Follower:
 
     def _binary(self, fact: Fact, user: Instr) -> None:
         left, right = user.args
-        if left is not right and self._same(left, right):
+        if left is not right and self.same(left, right):
             if user.data == "Mult" and left is fact.at:
                 self._arithmetic(fact, user, fact.how.call("pow", 2.0))
             return
@@ -166,12 +172,15 @@ class Follower:
             return
         other = right if left is fact.at else left
         number = self.constants.number(other)
-        how = None
         if number is not None:
             how = by_operator(fact.how, str(user.data), number, other is left)
+        elif fact.read.type == "string":
+            how = None
+        else:
+            how = fact.how.mixed(str(user.data), other, other is left)
         self._arithmetic(fact, user, how)
 
-    def _same(self, one: Instr, other: Instr) -> bool:
+    def same(self, one: Instr, other: Instr) -> bool:
         """True where two instructions read the same variable, with nothing stored in between."""
         if one.op != other.op or one.data != other.data:
             return False
@@ -179,7 +188,7 @@ class Follower:
         if one.op == "load":
             return stores.get(one) == stores.get(other)
         if one.op == "attr":
-            return self._same(one.args[0], other.args[0]) and stores.get(one) == stores.get(other)
+            return self.same(one.args[0], other.args[0]) and stores.get(one) == stores.get(other)
         return False
 
     def _arithmetic(self, fact: Fact, user: Instr, how: How | None) -> None:
@@ -269,9 +278,13 @@ class Follower:
         """A value that is passed to a function outside the sources."""
         if (fact.at, user) in self.flow.points.spread:
             return
+        op = self.rules.arithmetic.get(path)
+        if fact.how.others and op != "same":
+            if not self._is_exposing(path):
+                self._lose(fact, user)
+            return
         if path in self.rules.comparisons and self._compare_inside(fact, user):
             return
-        op = self.rules.arithmetic.get(path)
         args = user.args[1:]
         if op is None:
             if path == "builtins.range":
@@ -358,3 +371,22 @@ class Follower:
                 if is_bound and not any(other in self.facts for other in inside.others):
                     del self.lost[call]
                     break
+
+
+def _keeps_formula(fact: Fact, to: Instr, via: Instr | None) -> bool:
+    """False where a value that was computed with others is data, and no threshold any more.
+
+    It is handed to a function, returned, put into a container, or moves the variable on that it
+    was computed with.
+    """
+    if via is None or via.op not in ("store", "setattr") or to.op not in ("load", "attr"):
+        return False
+    return not any(
+        other.op == to.op and other.data == to.data and _owner(other) == _owner(to)
+        for other in fact.how.others
+    )
+
+
+def _owner(instr: Instr) -> object:
+    """The variable whose attribute it is."""
+    return instr.args[0].data if instr.op == "attr" else None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -81,6 +81,14 @@ class Found:
         return "flag" if self.operand == FLAG else "parameter"
 
 
+def _parts(values: Iterable[Instr]) -> Iterator[Instr]:
+    """Values, and what they are computed from in the same expression."""
+    for value in values:
+        yield value
+        if value.op in ("binary", "unary", "call"):
+            yield from _parts(value.args)
+
+
 def position(instr: Instr) -> tuple[int, int]:
     """Line and column from 1; 0 where the instruction has none."""
     return _start(instr.node)
@@ -126,6 +134,8 @@ class Gatherer:
         }
         for compared in self.follower.compared.values():
             if self._is_measured(compared, both):
+                if compared.fact.how.others:
+                    self.follower.lost.setdefault(compared.at, compared.fact)
                 continue
             key = (
                 compared.at.function.module,
@@ -184,6 +194,8 @@ class Gatherer:
         An operand that may be measured is the threshold only if the other side is measured, too.
         """
         stack = compared.fact.stack
+        if compared.fact.how.others:
+            return compared.operand < 0 or not self._is_threshold(compared, both)
         if compared.inside is not None:
             others = (self.kinds(each, stack) for each in compared.inside.others)
             only = frozenset[str]().union(*others) <= {"const"}
@@ -195,6 +207,33 @@ class Gatherer:
             return False
         other = self.kinds(compared.at.args[1 - compared.operand], stack)
         return other <= {"const"} or (compared.at in both and "other" not in other)
+
+    def _is_threshold(self, compared: Compared, both: set[Instr]) -> bool:
+        """True where a value that was computed with others is what something is compared with.
+
+        Not where the parameter, or one of the others, is on the other side, too.
+        """
+        fact = compared.fact
+        other = compared.at.args[1 - compared.operand]
+        if any(each.name == fact.name for each in self.follower.facts.get(other, ())):
+            return False
+        if not self._was_kept(fact) and any(
+            self.follower.same(other, part) for part in _parts(fact.how.others)
+        ):
+            return False
+        if self.follower.constants.number(other) == 0:
+            return fact.how.is_difference
+        kinds = self.kinds(other, fact.stack)
+        return not kinds <= {"const"} and not (compared.at in both and "other" not in kinds)
+
+    def _was_kept(self, fact: Fact) -> bool:
+        """True where the sum was stored, and another run of the function may have done that."""
+        here: Fact | None = fact
+        while here is not None and here.how.others:
+            if here.at in self.follower.flow.reaching.open:
+                return True
+            here = here.before
+        return False
 
     def kinds(self, instr: Instr, stack: Stack) -> frozenset[str]:
         """Where a value may come from, in a function that ``stack`` calls.

@@ -1,14 +1,23 @@
-"""The computation on a parameter's value before it is compared: scale * inner + offset."""
+"""The computation on a parameter's value before it is compared: scale * inner + offset.
+
+Up to two values that are not constant may take part (``x * self.speed``). They are kept as text.
+"""
 
 from __future__ import annotations
 
+import ast
 import math
 from dataclasses import dataclass, replace
 
+from pytpc.python_analysis.ir.instructions import Instr
 from pytpc.static.arithmetic import Tree
 from pytpc.static.link_unit import Transform
 
 _SIGNS = {"/": " / ", "rem": " rem ", "shr": " >> ", "and": " & "}
+_MIXING = {"Add": "+", "Sub": "-", "Mult": "*", "Div": "/", "FloorDiv": "//", "Mod": "%"}
+_SUMS = ("+", "-")
+_MOST_OTHERS = 2
+_LONGEST_TEXT = 60
 _DEEPEST = 12
 # Two to the power of this does not fit a double.
 _LONGEST_SHIFT = 1024
@@ -16,11 +25,15 @@ _LONGEST_SHIFT = 1024
 
 @dataclass(frozen=True)
 class How:
-    """``inner`` is None where no function was applied to the parameter."""
+    """``inner`` is None where no function was applied to the parameter.
+
+    ``others`` are the values in it that are not constant.
+    """
 
     scale: float = 1.0
     offset: float = 0.0
     inner: Application | None = None
+    others: tuple[Instr, ...] = ()
 
     @property
     def plain(self) -> bool:
@@ -51,7 +64,25 @@ class How:
         """``op`` of it and of ``constant``, which may come ``first``; None where it is too deep."""
         if self.depth >= _DEEPEST:
             return None
-        return How(inner=Application(op, self, constant, first))
+        return How(inner=Application(op, self, constant, first), others=self.others)
+
+    def mixed(self, op: str, other: Instr, first: bool) -> How | None:
+        """After a binary operator (its class in ``ast``) with a value that is not constant.
+
+        None where there is no notation for it.
+        """
+        text = _text_of(other)
+        if op not in _MIXING or text is None or len(self.others) >= _MOST_OTHERS:
+            return None
+        inner = Application(_MIXING[op], self, None, first, text)
+        return How(inner=inner, others=(*self.others, other))
+
+    @property
+    def is_difference(self) -> bool:
+        """True where another value is only added to it, or taken from it."""
+        inner = self.inner
+        alone = self.scale == 1 and self.offset == 0
+        return alone and inner is not None and bool(inner.other) and inner.op in _SUMS
 
     def tree(self) -> Tree:
         """The tree of docs/reference/formats.md."""
@@ -68,12 +99,11 @@ class How:
     def text(self) -> str:
         """A text for people: ``2 * sqrt(x + 1)``."""
         text = "x" if self.inner is None else self.inner.text()
-        if (
-            self.inner is not None
-            and self.inner.op in _SIGNS
-            and not (self.scale == 1 and self.offset == 0)
-        ):
-            text = f"({text})"
+        inner = self.inner
+        if inner is not None:
+            scaled = self.scale != 1 or (self.offset != 0 and not inner.other)
+            if scaled and (inner.other or inner.op in _SIGNS):
+                text = f"({text})"
         if self.scale == -1 and self.inner is not None:
             text = f"-{text}"
         elif self.scale != 1:
@@ -86,7 +116,8 @@ class How:
         """Its text next to an operator."""
         simple = self.scale == 1 and self.offset == 0
         inner = self.inner
-        if simple and (inner is None or not (inner.op in _SIGNS or inner.is_square)):
+        alone = inner is None or not (inner.other or inner.op in _SIGNS or inner.is_square)
+        if simple and alone:
             return self.text()
         return f"({self.text()})"
 
@@ -96,17 +127,19 @@ class How:
             return None
         if self.inner is None:
             return Transform("affine", self.scale, self.offset, self.text())
-        return Transform("expression", text=self.text(), tree=self.tree())
+        tree = None if self.others else self.tree()
+        return Transform("expression", text=self.text(), tree=tree)
 
 
 @dataclass(frozen=True)
 class Application:
-    """One function of a transform."""
+    """One function of a transform; ``other`` is the text of an operand that is not constant."""
 
     op: str
     of: How
     constant: float | None
     first: bool
+    other: str = ""
 
     @property
     def is_square(self) -> bool:
@@ -115,6 +148,11 @@ class Application:
 
     def text(self) -> str:
         """A text for people."""
+        if self.other:
+            # Only what follows a minus needs parentheses in a sum.
+            bare = self.op in _SUMS and not (self.first and self.op == "-")
+            parts = [self.of.text() if bare else self.of.operand(), self.other]
+            return f" {self.op} ".join(reversed(parts) if self.first else parts)
         if self.is_square:
             return f"{self.of.operand()}^2"
         if self.constant is None:
@@ -125,6 +163,18 @@ class Application:
         if self.first:
             parts.reverse()
         return f"{self.op}({', '.join(parts)})" if sign is None else sign.join(parts)
+
+
+def _text_of(other: Instr) -> str | None:
+    """An operand as it is in the source; None where it has no place there."""
+    node = other.node
+    if not isinstance(node, ast.expr):
+        return None
+    text = ast.unparse(node)
+    if len(text) > _LONGEST_TEXT:
+        return None
+    alone = (ast.Name, ast.Attribute, ast.Call, ast.Subscript)
+    return text if isinstance(node, alone) else f"({text})"
 
 
 def _number(value: float) -> str:
