@@ -35,6 +35,7 @@ from pytpc.ingest.binary_system import (
     summary_rows,
     written_summaries,
 )
+from pytpc.ingest.condense import Condenser, hot_keys
 from pytpc.ingest.gathering import Channel, Gathering, Progress
 from pytpc.ingest.spool import Rows
 from pytpc.python_runtime import log_layout as layout
@@ -80,10 +81,13 @@ class _TpcReader:
         self._last_ns = -(2**63)
         self._clock = Clock.of([(0, 0)])
         self._key_of_site: Int32s = np.full(1, -1, np.int32)
+        self._condenser: Condenser | None = None
 
     def read(self) -> None:
         for block in self.blocks():
             self._hand_in(block)
+        if self._condenser is not None:
+            self._condenser.finish()
         self._summaries()
         self._complaints()
         self._progress(self._file.count)
@@ -94,6 +98,8 @@ class _TpcReader:
         self._read_system()
         self._clock = Clock.of([(self.header.steady_ns, self.header.real_ns), *self._system.syncs])
         self._key_of_site = self._system.key_codes(self._gathering)
+        if not self._gathering.has_room(self._file.count * layout.RECORDS_OF_CHUNK):
+            self._condenser = self._made_condenser(threads)
         yield from self._merged(threads)
 
     def _read_system(self) -> None:
@@ -280,7 +286,24 @@ class _TpcReader:
 
     def _hand_in(self, block: RecordBlock) -> None:
         self._last_ns = max(self._last_ns, int(block.time_ns.max()))
-        self._gathering.add_events(self._channel, self._node_code, block)
+        if self._condenser is None:
+            self._gathering.add_events(self._channel, self._node_code, block)
+        else:
+            self._condenser.add(block)
+
+    def _made_condenser(self, threads: list[ThreadChunks]) -> Condenser:
+        """Condenses the comparisons that have most reports."""
+        sites, times = self._file.some_sites(threads)
+        keys = self._key_of_site.take(sites, mode="clip")
+        first = min(thread.first_steady for thread in threads)
+        return Condenser(
+            self._gathering,
+            self._channel,
+            self._node_code,
+            hot_keys(keys[keys >= 0], len(self._gathering.keys.codes), times),
+            seconds=(max(thread.last_steady for thread in threads) - first) / 1e9,
+            blocks=self._file.count // GROUP + len(threads),
+        )
 
     # --- the rest
 

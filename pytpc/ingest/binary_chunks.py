@@ -23,10 +23,12 @@ from pytpc.ingest.gathering import ReportColumns
 from pytpc.python_runtime import log_layout as layout
 
 Bytes = npt.NDArray[np.uint8]
+Sites = npt.NDArray[np.uint32]
 Skip = Callable[[str], None]
 
 # The most chunks that are read at once.
 GROUP = 32
+_SAMPLES = 128
 # Kind, thread and first record of a chunk, and the time of that record.
 _HEAD = struct.Struct("<IIQ48x8xq")
 
@@ -128,12 +130,16 @@ class RecordBlock(ReportColumns):
 
 @dataclass
 class ThreadChunks:
-    """The chunks of one thread, in the order of the file, and how far they were read."""
+    """The chunks of one thread, in the order of the file, and how far they were read.
+
+    ``first_steady`` and ``last_steady`` are the times of the first record in its first and last.
+    """
 
     number: int
     chunks: list[int] = field(default_factory=list)
     firsts: list[int] = field(default_factory=list)
     first_steady: int = 0
+    last_steady: int = 0
     read: int = 0
     expected: int = 0
     simulated_ns: int = -1
@@ -181,6 +187,7 @@ class ChunkFile:
                     thread.first_steady = first_steady
                 thread.chunks.append(place)
                 thread.firsts.append(first)
+                thread.last_steady = first_steady
             elif kind == layout.SYSTEM_CHUNK:
                 self.system.append(place)
             elif kind == layout.LIVE_CHUNK:
@@ -193,6 +200,20 @@ class ChunkFile:
             place += layout.CHUNK_BYTES
         self.count = sum(len(thread.chunks) for thread in threads.values())
         return list(threads.values())
+
+    def some_sites(self, threads: list[ThreadChunks]) -> tuple[Sites, float]:
+        """uint32[n]: the sites of the reports in chunks all over the file.
+
+        Also how many times as many reports the file has.
+        """
+        places = sorted(place for thread in threads for place in thread.chunks)
+        some = min(_SAMPLES, len(places))
+        found = [np.empty(0, np.uint32)]
+        for number in range(some):
+            chunk = self.load_one(places[number * len(places) // some])
+            records = chunk[layout.CHUNK_HEADER_BYTES :].view(RECORD)
+            found.append(records["site"][(records["what"] & 0xFF) == layout.REPORT])
+        return np.concatenate(found), len(places) / max(1, some)
 
     def load(self, places: list[int]) -> Bytes:
         """uint8[n, 65536]: some chunks; what the file does not have of them is zero."""

@@ -19,7 +19,7 @@ from pytpc.base.wording import many
 from pytpc.ingest.short_summary import ShortSummary
 from pytpc.ingest.spool import RUN_ROWS, Spool
 from pytpc.recording.events import Events
-from pytpc.recording.marks import Mark, MarkMessages
+from pytpc.recording.marks import Mark, MarkMessages, joined
 from pytpc.recording.mission import Dropped, MalformedRecord, ReadName
 from pytpc.recording.summaries import Summaries, Summary
 
@@ -105,9 +105,16 @@ class Gathering:
     Args:
         folder: where rows that are too many for memory are kept; None: all stays in memory.
         run_rows: how many rows are held in memory before they go there.
+        most_rows: with how many reports a file is condensed by its reader; None: never.
     """
 
-    def __init__(self, folder: Path | None = None, run_rows: int = RUN_ROWS) -> None:
+    def __init__(
+        self,
+        folder: Path | None = None,
+        run_rows: int = RUN_ROWS,
+        most_rows: int | None = None,
+    ) -> None:
+        self.most_rows = most_rows
         self.keys = WordCodes()
         self.nodes = WordCodes()
         self.channels: list[Channel] = []
@@ -149,6 +156,14 @@ class Gathering:
             raise ValueError(f"more than {MOST_CHANNELS:,} sources")
         self.channels.append(Channel(len(self.channels), source, way, topic))
         return self.channels[-1]
+
+    def has_room(self, rows: int) -> bool:
+        """Whether so many more reports fit into memory."""
+        return self.most_rows is None or len(self.events) + rows <= self.most_rows
+
+    def known_marks(self) -> tuple[Mark, ...]:
+        """The marks that were read until now."""
+        return joined([*self.marks, *self.mark_messages.marks()])
 
     def turns(self, count: int) -> range:
         """Numbers for this many records, in the order in which they came."""

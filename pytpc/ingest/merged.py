@@ -18,7 +18,7 @@ from pytpc.ingest.duplicates import APART_NS, TOLERANCE_NS, Once, clock_notes
 from pytpc.ingest.gathering import EVENT_ROW, SUMMARY_ROW, Gathering, Progress
 from pytpc.ingest.spool import Rows
 from pytpc.recording.events import Events
-from pytpc.recording.marks import Mark, joined
+from pytpc.recording.marks import Mark
 from pytpc.recording.mission import EVENTS_FILE, SUMMARIES_FILE, Recording, write_marks_json
 from pytpc.recording.summaries import Summaries
 
@@ -101,7 +101,7 @@ class Merged:
     def rest(self, events: Events, summaries: Summaries) -> Recording:
         """The recording with these tables; the blocks must have been read."""
         gathering = self.gathering
-        marks = joined([*gathering.marks, *gathering.mark_messages.marks()])
+        marks = gathering.known_marks()
         start_ns, end_ns = self._span(marks)
         notes = [
             *gathering.notes,

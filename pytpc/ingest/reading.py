@@ -36,6 +36,8 @@ _BY_MAGIC = {
     SQLITE_MAGIC: ("ros2_bag", "read_ros2_into"),
 }
 """Module and function of the reader of each format."""
+MOST_ROWS = 1 << 22
+"""A binary file with more reports is condensed, if the recording is read into memory."""
 ROS2_FILE = "metadata.yaml"
 _FIRST = 4096
 # A spreadsheet may have changed the commas; the reader of marks then says what is wrong.
@@ -66,7 +68,7 @@ def read(
     if len(given) == 1 and is_converted(given[0]):
         recording = load_recording(given[0])
         return replace(recording, marks=joined([*recording.marks, *_beside(given[0])]))
-    gathering = Gathering()
+    gathering = Gathering(most_rows=MOST_ROWS)
     gather(given, gathering, on_progress)
     return Merged(gathering, name_of(given), tolerance_ns).recording()
 
@@ -115,6 +117,7 @@ def gather(
         InputError: see ``read``.
     """
     seen: set[Path] = set()
+    last: list[tuple[Reader, Path]] = []
     for path in paths:
         found = sources(path)
         if path not in found and path.resolve() not in seen:
@@ -123,10 +126,18 @@ def gather(
         for source in found:
             # A file with two names is read once.
             real = source.resolve()
-            if real not in seen:
-                seen.add(real)
-                reader_of(source)(source, gathering, on_progress)
-                gathering.marks += _beside(source)
+            if real in seen:
+                continue
+            seen.add(real)
+            reader = reader_of(source)
+            gathering.marks += _beside(source)
+            if source.suffix == ".tpc" and not gathering.has_room(source.stat().st_size // 32):
+                # It is condensed, which needs the marks of all others.
+                last.append((reader, source))
+            else:
+                reader(source, gathering, on_progress)
+    for reader, source in last:
+        reader(source, gathering, on_progress)
     empty = gathering.without_reports
     if empty:
         what = many(len(empty), "text file")

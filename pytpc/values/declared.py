@@ -26,6 +26,7 @@ from pytpc.recording.declaration import Declared, RawValues, make_declared
 from pytpc.static.static_info import StaticInfo
 
 _LARGEST_FILE = 1 << 20
+_DECLARING = (".cfg", ".bag")
 _NOT_SOURCES = frozenset({"build", "devel", "install", "log", "node_modules", "__pycache__"})
 
 _TYPES = {"str_t": "str", "bool_t": "bool", "int_t": "int", "double_t": "double"}
@@ -136,11 +137,11 @@ def _read(path: Path) -> tuple[list[Declared], list[str]]:
 
 def _declaring_files(path: Path) -> list[Path]:
     if path.is_file():
-        return [path]
+        return [path] if path.suffix in _DECLARING else []
     found = []
     for folder, below, files in os.walk(path):
         below[:] = sorted(b for b in below if not b.startswith(".") and b not in _NOT_SOURCES)
-        found += [Path(folder, name) for name in sorted(files) if name.endswith((".cfg", ".bag"))]
+        found += [Path(folder, name) for name in sorted(files) if name.endswith(_DECLARING)]
     return found
 
 

@@ -302,3 +302,11 @@ def test_broken_messages_and_bags(tmp_path):
     assert read_declared([tmp_path], said.append) == []
     assert len(said) == 1
     assert said[0].startswith(f"{bag}: descriptions of parameters: ")
+
+
+def test_a_recording_that_is_no_bag_declares_nothing(tmp_path: Path) -> None:
+    recording = tmp_path / "mission.tpc"
+    recording.write_bytes(b"TPCLOG1\n".ljust((1 << 20) + 1, b"\0"))
+    said: list[str] = []
+    assert read_declared([recording], said.append) == []
+    assert said == []

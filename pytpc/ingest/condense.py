@@ -1,0 +1,244 @@
+"""Keeps of comparisons in hot loops what the policy ``edges`` would: flops, and summaries.
+
+A file with more reports than fit into memory is condensed while it is read. The summaries of a
+period are cut at the ends of the windows before the marks, so that each is in a window or outside:
+the score of type II is then that of all evaluations, but for the rounding of sums.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from pytpc.base.columns import Bools, Floats, Int32s, Int64s, order_of
+from pytpc.base.wording import many
+from pytpc.ingest.gathering import SUMMARY_ROW, Channel, Gathering, ReportColumns
+from pytpc.ingest.spool import Rows
+
+WINDOW_NS = 12 * 10**9
+"""The window of type II. A question with another one gets estimates."""
+WHOLE_ROWS = 1 << 20
+"""Comparisons that together have at most so many reports keep each of them."""
+_PERIOD_NS = 10**8
+_MOST_SUMMARIES = 1 << 19
+_MOST_FLOPS = 1 << 21
+_HELD = 1 << 16
+_FAR = 1e-4
+_SUMS = ("count", "flops", "far", "odd", "diff_mean", "abs_mean")
+
+
+class Condenser:
+    """Takes the reports of one process, in order, and hands in what is kept of them.
+
+    Args:
+        gathering: takes in events and summaries. Its marks must be known.
+        channel: of the process.
+        node: code of its node.
+        hot: bool[n]: for each code of a key whether its reports are condensed.
+        seconds: how long the recording is, about; ``blocks`` in how many blocks it comes.
+    """
+
+    def __init__(  # noqa: PLR0913 - what is known of the file
+        self,
+        gathering: Gathering,
+        channel: Channel,
+        node: int,
+        hot: Bools,
+        *,
+        seconds: float,
+        blocks: int,
+    ) -> None:
+        self._gathering = gathering
+        self._channel = channel
+        self._node = node
+        self._hot = hot
+        comparisons = max(1, int(np.count_nonzero(hot)))
+        self._period_ns = max(_PERIOD_NS, round(seconds * 1e9 * comparisons / _MOST_SUMMARIES))
+        self._most_flops = max(2, min(256, _MOST_FLOPS // (max(1, blocks) * comparisons)))
+        self._cuts = _window_ends([mark.time_ns for mark in gathering.known_marks()])
+        # Outcome of the last evaluation of each key, -1 before the first.
+        self._last = np.full(hot.size, -1, np.int8)
+        self._held: list[tuple[Rows, Int64s]] = []
+        self._held_rows = 0
+        self._span = (2**63 - 1, -(2**63))
+        self._condensed = 0
+        self._uncounted_flops = 0
+
+    def add(self, block: ReportColumns) -> None:
+        """Take in reports, at least one."""
+        first, last = int(block.time_ns.min()), int(block.time_ns.max())
+        self._span = min(self._span[0], first), max(self._span[1], last)
+        hot = self._hot[block.key]
+        kept = ~hot
+        rows = np.flatnonzero(hot)
+        if rows.size:
+            kept[rows[self._condense(block, rows)]] = True
+        self._gathering.add_events(self._channel, self._node, _part(block, kept))
+        if self._held_rows >= _HELD:
+            self._join()
+
+    def finish(self) -> None:
+        """Hand in the summaries, and say what was done."""
+        if not self._held:
+            return
+        self._join()
+        rows, _ = self._held[0]
+        finite = (rows["count"] - rows["odd"]).astype(np.float64)
+        finite[finite == 0] = np.nan
+        with np.errstate(all="ignore"):
+            rows["diff_mean"] /= finite
+            rows["abs_mean"] /= finite
+        self._gathering.summaries.append(rows)
+        self._gathering.spans.append(self._span)
+        comparisons = many(np.unique(rows["key"]).size, "comparison")
+        note = (
+            f"{self._channel.source}: {many(self._condensed, 'evaluation')} of {comparisons} in hot"
+            " loops do not fit into memory: only their flops and summaries are used"
+        )
+        if self._uncounted_flops:
+            note += (
+                f", without {many(self._uncounted_flops, 'flop')} that others follow within"
+                f" {self._period_ns / 1e9:.1f} s"
+            )
+        self._gathering.notes.append(note)
+
+    def _condense(self, block: ReportColumns, rows: Int64s) -> Int64s:
+        """Which of ``rows`` are kept as events; the others are only in a summary."""
+        key = block.key[rows]
+        order = order_of(key)
+        rows, key = rows[order], key[order]
+        time_ns, result = block.time_ns[rows], block.result[rows]
+        bounds, period = self._periods(time_ns, order)
+        new_key = np.concatenate([[True], key[1:] != key[:-1]])
+        starts = np.flatnonzero(new_key | np.concatenate([[True], period[1:] != period[:-1]]))
+        heads = np.flatnonzero(new_key)
+        tails = np.append(heads[1:], key.size) - 1
+        before = np.empty(key.size, np.int8)
+        before[1:] = result[:-1]
+        before[heads] = self._last[key[heads]]
+        self._last[key[tails]] = result[tails]
+        flop = (before != result) & (before >= 0)
+        flops = np.add.reduceat(flop, starts, dtype=np.int64)
+        kept = self._some(flop, flops, starts) | (before < 0)
+        partial = _summaries(block, rows, starts)
+        partial["key"], partial["node"] = key[starts], self._node
+        partial["channel"] = self._channel.code
+        partial["flops"] = flops
+        partial["begin_ns"] = np.minimum.reduceat(time_ns, starts)
+        partial["end_ns"] = np.maximum.reduceat(time_ns, starts)
+        self._held.append((partial, bounds[period[starts]]))
+        self._held_rows += starts.size
+        self._condensed += rows.size
+        found: Int64s = np.sort(order[kept])
+        return found
+
+    def _periods(self, time_ns: Int64s, order: Int64s) -> tuple[Int64s, Int64s]:
+        """The beginnings of periods, and for each of the sorted rows the number of its period."""
+        first, last = int(time_ns.min()), int(time_ns.max())
+        step = self._period_ns
+        grid = np.arange(first // step * step, last + 1, step, dtype=np.int64)
+        within = self._cuts[(self._cuts > first) & (self._cuts <= last)]
+        bounds = np.union1d(grid, within)
+        if bounds.size == 1:
+            return bounds, np.zeros(time_ns.size, np.int64)
+        in_turn = np.empty_like(time_ns)
+        in_turn[order] = np.searchsorted(bounds, time_ns, "right") - 1
+        # If the clock was set back, a report stays in the period of the one before it.
+        return bounds, np.maximum.accumulate(in_turn)[order]
+
+    def _some(self, flop: Bools, flops: Int64s, starts: Int64s) -> Bools:
+        """The flops that are kept: of very many in one period the last ones.
+
+        An even number is left out, so that those that are kept still alternate.
+        """
+        out = np.maximum(0, flops - self._most_flops) & ~1
+        if not out.any():
+            return flop
+        self._uncounted_flops += int(out.sum())
+        number = np.cumsum(flop)
+        before = number[starts] - flop[starts] + out
+        lengths = np.diff(np.append(starts, flop.size))
+        return flop & (number > np.repeat(before, lengths))
+
+    def _join(self) -> None:
+        """Make one summary of all parts of each."""
+        rows = np.concatenate([part for part, _ in self._held])
+        bound = np.concatenate([bound for _, bound in self._held])
+        order = np.lexsort((bound, rows["key"]))
+        rows, bound = rows[order], bound[order]
+        key = rows["key"]
+        starts = np.flatnonzero(
+            np.concatenate([[True], (key[1:] != key[:-1]) | (bound[1:] != bound[:-1])])
+        )
+        whole = rows[np.append(starts[1:], rows.size) - 1]
+        for name in _SUMS:
+            whole[name] = np.add.reduceat(rows[name], starts)
+        for name in ("begin_ns", "diff_min", "low"):
+            whole[name] = np.fmin.reduceat(rows[name], starts)
+        for name in ("end_ns", "diff_max", "high"):
+            whole[name] = np.fmax.reduceat(rows[name], starts)
+        self._held = [(whole, bound[starts])]
+        # Those that cannot be joined any more do not count.
+        self._held_rows = 0
+
+
+def hot_keys(sample: Int32s, keys: int, times: float) -> Bools:
+    """bool[keys]: which keys have too many reports to keep each.
+
+    There are ``times`` as many reports as in ``sample``.
+    """
+    counts = np.bincount(sample, minlength=keys) * times
+    rising = np.argsort(counts, kind="stable")
+    hot = np.zeros(keys, np.bool_)
+    hot[rising] = np.cumsum(counts[rising]) > WHOLE_ROWS
+    return hot
+
+
+def _window_ends(marks_ns: list[int]) -> Int64s:
+    """The first ns of each window, and the first behind it."""
+    marks = np.array(marks_ns, np.int64)
+    return np.unique(np.concatenate([marks - WINDOW_NS, marks + 1]))
+
+
+def _summaries(block: ReportColumns, rows: Int64s, starts: Int64s) -> Rows:
+    """A summary from each of ``starts`` on, with sums in place of means."""
+    cmp, thresh = block.cmp[rows], block.thresh[rows]
+    ends = np.append(starts[1:], rows.size)
+    found = np.zeros(starts.size, SUMMARY_ROW)
+    found["count"] = ends - starts
+    found["result"] = block.result[rows[ends - 1]]
+    found["res"] = block.res[rows[ends - 1]]
+    found["cmp"], found["thresh"] = cmp[ends - 1], thresh[ends - 1]
+    with np.errstate(all="ignore"):
+        diff = cmp - thresh
+        size = np.abs(diff)
+        low, high = np.minimum(cmp, thresh), np.maximum(cmp, thresh)
+        sums = diff, size
+        if not np.isfinite(size.sum()):
+            odd = ~(np.isfinite(cmp) & np.isfinite(thresh))
+            found["odd"] = np.add.reduceat(odd, starts, dtype=np.int64)
+            sums = np.where(odd, 0.0, diff), np.where(odd, 0.0, size)
+            diff, size, low, high = (_without(odd, one) for one in (diff, size, low, high))
+        found["far"] = np.add.reduceat(size > _FAR, starts, dtype=np.int64)
+        found["diff_mean"] = np.add.reduceat(sums[0], starts)
+        found["abs_mean"] = np.add.reduceat(sums[1], starts)
+        found["diff_min"] = np.fmin.reduceat(diff, starts)
+        found["diff_max"] = np.fmax.reduceat(diff, starts)
+        found["low"] = np.fmin.reduceat(low, starts)
+        found["high"] = np.fmax.reduceat(high, starts)
+    return found
+
+
+def _without(odd: Bools, values: Floats) -> Floats:
+    return np.where(odd, np.nan, values)
+
+
+def _part(block: ReportColumns, kept: npt.NDArray[np.bool_]) -> ReportColumns:
+    return ReportColumns(
+        block.time_ns[kept],
+        block.key[kept],
+        block.result[kept],
+        block.cmp[kept],
+        block.thresh[kept],
+        block.res[kept],
+    )

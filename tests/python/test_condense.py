@@ -1,0 +1,131 @@
+"""Long binary files: comparisons in hot loops become flops and summaries while they are read."""
+
+from __future__ import annotations
+
+import math
+import random
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tpc_file import FULL, TpcFile, header, report, site, sync
+
+from pytpc.diagnosis.scores.scores import type1
+from pytpc.diagnosis.scores.summary_scores import LogTables, type2_of_summaries
+from pytpc.ingest import condense
+from pytpc.ingest.gathering import Gathering
+from pytpc.ingest.merged import Merged
+from pytpc.ingest.reading import gather
+from pytpc.recording.marks import Mark, marks_beside, write_marks
+from pytpc.recording.mission import Recording
+
+SECOND = 10**9
+HOT, RARE = "aaaaaaaa-0000-5000-8000-000000000001", "bbbbbbbb-0000-5000-8000-000000000002"
+
+
+def read_with_room(path: Path, rows: int | None) -> Recording:
+    """Read a file where so many reports have room; None: all."""
+    gathering = Gathering(most_rows=rows)
+    gather([path], gathering)
+    return Merged(gathering, "mission").recording()
+
+
+def write(path: Path, reports: list[bytes], marks_ns: list[int], second: list[bytes] = ()) -> Path:  # type: ignore[assignment]
+    """A file of one node with two sites, the reports of one or two threads, and marks."""
+    file = TpcFile(header(real=0))
+    file.system(sync(0, 0), site(1, HOT), site(2, RARE))
+    for number, own in enumerate((reports, second), start=1):
+        for first in range(0, len(own), FULL):
+            file.thread(number, *own[first : first + FULL])
+    file.write(path)
+    write_marks([Mark(at, "II") for at in marks_ns], marks_beside(path))
+    return path
+
+
+@pytest.fixture(autouse=True)
+def _nothing_stays_whole_but_the_rare(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(condense, "WHOLE_ROWS", 2)
+
+
+def test_flops_and_summaries(tmp_path: Path) -> None:
+    # Four evaluations of the hot one in the first tenth of a second, 1 > 2 is false; two in the
+    # next. The mark's window begins at 0.15 s, which cuts the second period in two.
+    reports = [
+        report(1, 10**7, 1.0, 2.0),
+        report(2, 2 * 10**7, 5.0, 4.0, result=1),
+        report(1, 3 * 10**7, 2.5, 2.0, result=1),
+        report(1, 4 * 10**7, 4.0, 2.0, result=1),
+        report(1, 9 * 10**7, 1.5, 2.0),
+        report(1, 12 * 10**7, 2.0, 2.0),
+        report(1, 16 * 10**7, math.nan, 2.0),
+    ]
+    mark = 12 * SECOND + 15 * 10**7
+    found = read_with_room(write(tmp_path / "a.tpc", reports, [mark]), 5)
+    events = found.events
+    assert [(int(t), events.keys[k], bool(r)) for t, k, r in zip(
+        events.time_ns, events.key, events.result, strict=True
+    )] == [
+        (10**7, HOT, False),
+        (2 * 10**7, RARE, True),
+        (3 * 10**7, HOT, True),
+        (9 * 10**7, HOT, False),
+    ]  # fmt: skip
+    rows = found.summaries
+    # diff of the first four: -1, 0.5, 2, -0.5, of which all are far from 0.
+    names = ("begin_ns", "end_ns", "count", "flops", "far", "odd", "diff_min", "diff_max", "low")
+    table = [tuple(getattr(rows, name)[row] for name in names) for row in range(len(rows))]
+    assert table[:2] == [
+        (10**7, 9 * 10**7, 4, 2, 4, 0, -1.0, 2.0, 1.0),
+        (12 * 10**7, 12 * 10**7, 1, 0, 0, 0, 0.0, 0.0, 2.0),
+    ]
+    assert table[2][:6] == (16 * 10**7, 16 * 10**7, 1, 0, 0, 1)
+    assert math.isnan(table[2][6])
+    assert (rows.diff_mean[0], rows.abs_mean[0], rows.high[0]) == (0.25, 1.0, 4.0)
+    assert (rows.cmp[0], bool(rows.result[0])) == (1.5, False)
+    assert (found.start_ns, found.end_ns) == (10**7, mark)
+    assert any("6 evaluations of 1 comparison in hot loops" in note for note in found.notes)
+
+
+def test_whole_where_there_is_room(tmp_path: Path) -> None:
+    reports = [report(1, at, 1.0, 2.0) for at in range(5)]
+    path = write(tmp_path / "a.tpc", reports, [SECOND])
+    assert len(read_with_room(path, None).events) == 5
+    assert len(read_with_room(path, FULL).events) == 5
+    assert len(read_with_room(path, FULL - 1).events) == 1
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_scores_are_those_of_all_evaluations(seed: int, tmp_path: Path) -> None:
+    drawn = random.Random(seed)
+    threads: list[list[bytes]] = []
+    for _ in range(2):
+        at, own = 0, []
+        for _ in range(4000):
+            at += drawn.randrange(1, 20 * 10**6)
+            value = drawn.choice([drawn.gauss(0, 1), 1.0, math.nan]) if own else 0.0
+            number = 2 if drawn.random() < 0.0002 else 1
+            own.append(report(number, at, value, 1.0, result=int(value > 1.0)))
+        threads.append(own)
+    marks = [15 * SECOND, 31 * SECOND + 123456789]
+    path = write(tmp_path / "a.tpc", threads[0], marks, threads[1])
+    whole, short = read_with_room(path, None), read_with_room(path, 10)
+    assert len(whole.events) == 8000
+    assert len(short.summaries)
+    keys = (HOT,)
+    tables = [LogTables(each.events.with_keys(keys), each.summaries) for each in (whole, short)]
+    ones = np.ones(1)
+    first, second = (type1(each.events, marks, ones) for each in tables)
+    np.testing.assert_array_equal(first, second)
+    first, second = (type2_of_summaries(each, marks, ones) for each in tables)
+    np.testing.assert_allclose(first, second, rtol=1e-9)
+
+
+def test_of_very_many_flops_the_last_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(condense, "_MOST_FLOPS", 0)
+    # A false one, then 7 flops, of which the last 2 may stay, or 3: those left out are even.
+    reports = [report(1, 10**6 * n, float(n % 2), 0.5, result=n % 2) for n in range(8)]
+    found = read_with_room(write(tmp_path / "a.tpc", reports, [SECOND]), 5)
+    assert found.events.time_ns.tolist() == [0, 5 * 10**6, 6 * 10**6, 7 * 10**6]
+    assert found.events.flop.tolist() == [False, True, True, True]
+    assert found.summaries.flops.tolist() == [7]
+    assert any("without 4 flops" in note for note in found.notes)
