@@ -11,15 +11,13 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
-import subprocess
 import sys
 import tempfile
 import uuid
 from pathlib import Path
 
 import numpy as np
-from figures import figure
+from figures import figure, measured
 
 from pytpc.ingest.binary_chunks import RECORD
 
@@ -151,15 +149,6 @@ def write_light(path: Path) -> None:
         file.thread(1, *reports[first : first + FULL])
     file.write(path)
     write_marks(path)
-
-
-def measured(*command: str) -> tuple[float, float]:
-    """Processor seconds and peak MB of a command."""
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    _, status, usage = os.wait4(process.pid, 0)
-    if status:
-        raise SystemExit(f"{' '.join(command)}: exit status {status}")
-    return usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
 
 
 def best(*command: str, rounds: int) -> tuple[float, float]:
