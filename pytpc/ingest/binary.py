@@ -23,6 +23,7 @@ from pytpc.ingest.binary_chunks import (
     RECORD,
     Bytes,
     ChunkFile,
+    Columns,
     FileHeader,
     RecordBlock,
     ThreadChunks,
@@ -93,7 +94,10 @@ class _TpcReader:
         self._progress(self._file.count)
 
     def blocks(self) -> Iterator[RecordBlock]:
-        """All reports in the order of the steady clock; everything else is read first."""
+        """All reports in the order of the steady clock; everything else is read first.
+
+        The memory of a block is used again for a later one.
+        """
         threads = self._file.find(self._skip)
         self._read_system()
         self._clock = Clock.of([(self.header.steady_ns, self.header.real_ns), *self._system.syncs])
@@ -160,7 +164,7 @@ class _TpcReader:
             records = loaded[:, layout.CHUNK_HEADER_BYTES :].view(RECORD)
             first = thread.firsts[thread.read]
             is_last = thread.read + len(places) == len(thread.chunks)
-            whole = self._whole(thread, loaded, records, places)
+            whole = self._whole(thread, loaded, places)
             if whole is not None:
                 thread.expected = first + layout.RECORDS_OF_CHUNK * len(places)
                 thread.block = whole
@@ -170,13 +174,13 @@ class _TpcReader:
             self._progress(len(places))
             if len(thread.block):
                 return True
+        thread.columns = None
         return False
 
     def _whole(
         self,
         thread: ThreadChunks,
         loaded: Bytes,
-        records: npt.NDArray[np.void],
         places: list[int],
     ) -> RecordBlock | None:
         """The usual case: chunks full of reports of known sites, on wall time."""
@@ -188,26 +192,15 @@ class _TpcReader:
             thread.expected + layout.RECORDS_OF_CHUNK * len(places),
             layout.RECORDS_OF_CHUNK,
         )
-        # Kind and flags of all records.
-        what = loaded[:, layout.CHUNK_HEADER_BYTES :].view("<u2")[:, :: layout.RECORD_BYTES // 2]
-        what = np.ascontiguousarray(what).reshape(-1)
-        if firsts != list(expected) or bool(((what & 0xFF) != layout.REPORT).any()):
+        if firsts != list(expected):
             return None
-        # The last entry stands for all sites beyond.
-        sites = np.ascontiguousarray(records["site"]).reshape(-1)
-        keys = self._key_of_site.take(sites, mode="clip")
-        if int(keys.min()) < 0:
+        thread.columns = thread.columns or Columns()
+        block = thread.columns.fill(loaded, self._key_of_site)
+        if block is None or int(block.key.min()) < 0:
             return None
-        steady = self._rising(thread, np.ascontiguousarray(records["steady"]).reshape(-1))
-        return RecordBlock(
-            steady=steady,
-            time_ns=self._clock.rising(steady),
-            key=keys,
-            result=(what & 0x100) != 0,
-            cmp=records["cmp"].reshape(-1),
-            thresh=records["thresh"].reshape(-1),
-            res=(what & 0x200) != 0,
-        )
+        block.steady = self._rising(thread, block.steady)
+        self._clock.rising(block.steady, block.time_ns)
+        return block
 
     def _one_by_one(
         self,

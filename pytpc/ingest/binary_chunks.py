@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pytpc.base.columns import Bools, Int64s
+from pytpc.base.columns import Bools, Int32s, Int64s
 from pytpc.base.errors import InputError
 from pytpc.ingest.gathering import ReportColumns
 from pytpc.python_runtime import log_layout as layout
@@ -27,10 +27,19 @@ Sites = npt.NDArray[np.uint32]
 Skip = Callable[[str], None]
 
 # The most chunks that are read at once.
-GROUP = 32
+GROUP = 16
 _SAMPLES = 128
 # Kind, thread and first record of a chunk, and the time of that record.
 _HEAD = struct.Struct("<IIQ48x8xq")
+_HEADS = np.dtype(
+    {
+        "names": ["kind", "thread", "first", "steady"],
+        "formats": ["<u4", "<u4", "<u8", "<i8"],
+        "offsets": [0, 4, 8, 72],
+        "itemsize": _HEAD.size,
+    }
+)
+_MOST_HEADS = 1024
 
 RECORD = np.dtype(
     [("what", "<u4"), ("site", "<u4"), ("steady", "<i8"), ("cmp", "<f8"), ("thresh", "<f8")]
@@ -128,6 +137,57 @@ class RecordBlock(ReportColumns):
         return cls(**columns)
 
 
+class Columns:
+    """Memory for the reports of a group of chunks, which is filled again and again.
+
+    The system gives new memory page by page, which takes longer than all that is done with it.
+    """
+
+    def __init__(self) -> None:
+        rows = GROUP * layout.RECORDS_OF_CHUNK
+        self._words = np.empty((4, rows), np.int64)
+        self._places = np.empty(rows, np.int64)
+        self._time_ns = np.empty(rows, np.int64)
+        self._key = np.empty(rows, np.int32)
+        self._what = np.empty((2, rows), np.uint16)
+        self._outcomes = np.empty((2, rows), np.bool_)
+
+    def fill(self, loaded: Bytes, key_of_site: Int32s) -> RecordBlock | None:
+        """The reports of full chunks without their times; None where there is another record.
+
+        The block is valid until the next call. ``key`` is -1 for unknown sites.
+
+        Args:
+            loaded: uint8[n, 65536].
+            key_of_site: int32[m]; the last entry stands for all sites beyond.
+        """
+        count = loaded.shape[0] * layout.RECORDS_OF_CHUNK
+        words = self._words[:, :count]
+        records = loaded[:, layout.CHUNK_HEADER_BYTES :].view(np.int64)
+        shape = (loaded.shape[0], layout.RECORDS_OF_CHUNK, 4)
+        np.copyto(words.reshape(4, *shape[:2]), records.reshape(shape).transpose(2, 0, 1))
+        # The first word: kind, flags, two bytes, and the site in its upper half.
+        what, part = self._what[:, :count]
+        np.copyto(what, words[0], casting="unsafe")
+        if bool((np.bitwise_and(what, 0xFF, out=part) != layout.REPORT).any()):
+            return None
+        outcomes = self._outcomes[:, :count]
+        np.not_equal(np.bitwise_and(what, 0x100, out=part), 0, out=outcomes[0])
+        np.not_equal(np.bitwise_and(what, 0x200, out=part), 0, out=outcomes[1])
+        places = np.right_shift(words[0].view(np.uint64), 32, out=self._places[:count].view("u8"))
+        key = self._key[:count]
+        key_of_site.take(places.view(np.int64), mode="clip", out=key)
+        return RecordBlock(
+            steady=words[1],
+            time_ns=self._time_ns[:count],
+            key=key,
+            result=outcomes[0],
+            cmp=words[2].view(np.float64),
+            thresh=words[3].view(np.float64),
+            res=outcomes[1],
+        )
+
+
 @dataclass
 class ThreadChunks:
     """The chunks of one thread, in the order of the file, and how far they were read.
@@ -145,6 +205,7 @@ class ThreadChunks:
     simulated_ns: int = -1
     steady: int = -(2**63)
     block: RecordBlock | None = None
+    columns: Columns | None = None
 
 
 class ChunkFile:
@@ -168,11 +229,20 @@ class ChunkFile:
         threads: dict[int, ThreadChunks] = {}
         descriptor = self._descriptor
         place = layout.HEADER_BYTES
+        ahead = 1
         while place + layout.CHUNK_HEADER_BYTES <= self.size:
+            # Nearly all chunks are of threads, and stand together.
+            ahead = min(2 * ahead, _MOST_HEADS)
+            found = self._thread_heads(place, ahead)
+            if found.size:
+                _add_chunks(threads, found, place)
+                place += found.size * layout.CHUNK_BYTES
+                continue
+            ahead = 1
             head = os.pread(descriptor, _HEAD.size, place)
             if len(head) < _HEAD.size:
                 break
-            kind, number, first, first_steady = _HEAD.unpack(head)
+            kind = int.from_bytes(head[:4], "little")
             if kind == 0 and (next_data := _data_after(descriptor, place)) != place:
                 if next_data is None:
                     break
@@ -181,14 +251,7 @@ class ChunkFile:
                     place + layout.CHUNK_BYTES, layout.HEADER_BYTES + behind * layout.CHUNK_BYTES
                 )
                 continue
-            if kind == layout.THREAD_CHUNK:
-                thread = threads.setdefault(number, ThreadChunks(number))
-                if not thread.chunks:
-                    thread.first_steady = first_steady
-                thread.chunks.append(place)
-                thread.firsts.append(first)
-                thread.last_steady = first_steady
-            elif kind == layout.SYSTEM_CHUNK:
+            if kind == layout.SYSTEM_CHUNK:
                 self.system.append(place)
             elif kind == layout.LIVE_CHUNK:
                 self.live.append(place)
@@ -200,6 +263,17 @@ class ChunkFile:
             place += layout.CHUNK_BYTES
         self.count = sum(len(thread.chunks) for thread in threads.values())
         return list(threads.values())
+
+    def _thread_heads(self, place: int, most: int) -> npt.NDArray[np.void]:
+        """The heads of chunks of threads that stand at ``place``, one behind the other."""
+        end = min(self.size - _HEAD.size + 1, place + most * layout.CHUNK_BYTES)
+        places = range(place, end, layout.CHUNK_BYTES)
+        heads = [os.pread(self._descriptor, _HEAD.size, each) for each in places]
+        while heads and len(heads[-1]) < _HEAD.size:
+            heads.pop()
+        found = np.frombuffer(b"".join(heads), _HEADS)
+        others = np.flatnonzero(found["kind"] != layout.THREAD_CHUNK)
+        return found[: int(others[0])] if others.size else found
 
     def some_sites(self, threads: list[ThreadChunks]) -> tuple[Sites, float]:
         """uint32[n]: the sites of the reports in chunks all over the file.
@@ -239,6 +313,21 @@ class ChunkFile:
         there = min(layout.CHUNK_BYTES, self.size - place)
         chunk: Bytes = self.load([place])[0][: _whole_bytes(there)]
         return chunk
+
+
+def _add_chunks(threads: dict[int, ThreadChunks], heads: npt.NDArray[np.void], place: int) -> None:
+    """Add chunks that stand one behind the other from ``place`` on."""
+    numbers, first_rows = np.unique(heads["thread"], return_index=True)
+    for number in numbers[np.argsort(first_rows)].tolist():
+        rows = np.flatnonzero(heads["thread"] == number)
+        own = heads[rows]
+        thread = threads.get(number)
+        if thread is None:
+            thread = ThreadChunks(number, first_steady=int(own["steady"][0]))
+            threads[number] = thread
+        thread.chunks += (place + rows * layout.CHUNK_BYTES).tolist()
+        thread.firsts += own["first"].tolist()
+        thread.last_steady = int(own["steady"][-1])
 
 
 def _data_after(descriptor: int, place: int) -> int | None:

@@ -8,7 +8,19 @@ import numpy as np
 import pytest
 import tpc_file
 from mission_samples import key
-from tpc_file import FULL, TpcFile, dropped, header, report, simulated, site, slot, summary, sync
+from tpc_file import (
+    FULL,
+    TpcFile,
+    chunk,
+    dropped,
+    header,
+    report,
+    simulated,
+    site,
+    slot,
+    summary,
+    sync,
+)
 
 from pytpc.base.errors import InputError
 from pytpc.ingest.binary_clock import Clock
@@ -287,3 +299,24 @@ def test_a_hole_of_a_terabyte_is_jumped_over(tmp_path):
     with path.open("r+b") as stream:
         stream.truncate(1 << 40)
     assert len(read(path).events) == 1
+
+
+def test_threads_of_many_groups_of_chunks(tmp_path):
+    # Report n of thread t is at 10 n + t, and compares 3 n + t: memory is used again for each group
+    # of chunks, also while other threads still wait with a part of theirs.
+    count, threads = 40 * FULL + 5, 3
+    data = header() + chunk(2, 0, 0, sync(0, 0) + site(1, key(1)))
+    for first in range(0, count, FULL):
+        for thread in range(threads):
+            numbers = np.arange(first, min(first + FULL, count))
+            records = np.zeros(numbers.size, "<u4, <u4, <i8, <f8, <f8")
+            records.dtype.names = ("what", "site", "steady", "cmp", "thresh")
+            records["what"], records["site"] = 1, 1
+            records["steady"] = 10 * numbers + thread
+            records["cmp"] = 3 * numbers + thread
+            data += chunk(1, thread + 1, first, records.tobytes())
+    path = tmp_path / "a.tpc"
+    path.write_bytes(data)
+    events = read(path).events
+    assert events.cmp.tolist() == list(range(threads * count))
+    assert events.time_ns.tolist() == [10 * n + t for n in range(count) for t in range(threads)]
