@@ -147,3 +147,32 @@ def test_odd_files_report(start: str, ends: str, tmp_path: Path) -> None:
     line = 6 if start.endswith("\n") else 5
     said = "published 1\n"
     assert reports(tmp_path, copy, tmp_path / "ros") == (said, [(line, 5.0, 3.0, True)])
+
+
+FORMULAS = """import rospy
+pub = rospy.Publisher('out', 1)
+limit = rospy.get_param('~p')
+def say(value):
+    print('asked', value)
+    return value
+def heard(m):
+    if say(m.data) > limit * say(m.data - 1):
+        pub.publish('above')
+    pub.publish(say(m.data) < say(1) + limit)
+rospy.init_node('n')
+rospy.Subscriber('in', 1, heard)
+"""
+
+
+def test_formulas_report_and_evaluate_each_operand_once_in_order(tmp_path: Path) -> None:
+    (tmp_path / "ros").mkdir()
+    (tmp_path / "ros/rospy.py").write_text(ROSPY)
+    script = tmp_path / "node.py"
+    script.write_text(FORMULAS)
+    done = CliRunner().invoke(main, ["analyse", str(script), "-o", str(tmp_path / "static.json")])
+    assert done.exit_code == 0, done.stderr
+    # limit is 3. For 2: 2 > 3 * 1, 2 < 1 + 3; for 4: 4 > 3 * 3, 4 < 1 + 3.
+    said = "asked 2\nasked 1\nasked 2\nasked 1\npublished True\n"
+    said += "asked 4\nasked 3\nasked 4\nasked 1\npublished False\n"
+    reported = [(8, 2, 3, False), (10, 2, 4, True), (8, 4, 9, False), (10, 4, 4, False)]
+    assert reports(tmp_path, script, tmp_path / "ros") == (said, reported)
