@@ -54,7 +54,9 @@ class Condenser:
         self._hot = hot
         comparisons = max(1, int(np.count_nonzero(hot)))
         self._period_ns = max(_PERIOD_NS, round(seconds * 1e9 * comparisons / _MOST_SUMMARIES))
-        self._most_flops = max(2, min(256, _MOST_FLOPS // (max(1, blocks) * comparisons)))
+        # All flops are kept until there are very many; then so many of a comparison in a block.
+        self._flops_left = _MOST_FLOPS
+        self._most_flops = max(2, _MOST_FLOPS // (max(1, blocks) * comparisons))
         self._cuts = _window_ends([mark.time_ns for mark in gathering.known_marks()])
         # Outcome of the last evaluation of each key, -1 before the first.
         self._last = np.full(hot.size, -1, np.int8)
@@ -98,7 +100,7 @@ class Condenser:
         if self._uncounted_flops:
             note += (
                 f", without {many(self._uncounted_flops, 'flop')} that others follow within"
-                f" {self._period_ns / 1e9:.1f} s"
+                f" {self._period_ns / 1e9:.1f} s, as there are very many"
             )
         self._gathering.notes.append(note)
 
@@ -137,7 +139,8 @@ class Condenser:
         first, last = int(time_ns.min()), int(time_ns.max())
         step = self._period_ns
         grid = np.arange(first // step * step, last + 1, step, dtype=np.int64)
-        within = self._cuts[(self._cuts > first) & (self._cuts <= last)]
+        # A cut before this block may be in the same period.
+        within = self._cuts[(self._cuts > grid[0]) & (self._cuts <= last)]
         bounds = np.union1d(grid, within)
         if bounds.size == 1:
             return bounds, np.zeros(time_ns.size, np.int64)
@@ -151,9 +154,10 @@ class Condenser:
 
         An even number is left out, so that those that are kept still alternate.
         """
-        out = np.maximum(0, flops - self._most_flops) & ~1
-        if not out.any():
+        self._flops_left -= int(flops.sum())
+        if self._flops_left >= 0:
             return flop
+        out = np.maximum(0, flops - self._most_flops) & ~1
         self._uncounted_flops += int(out.sum())
         number = np.cumsum(flop)
         before = number[starts] - flop[starts] + out

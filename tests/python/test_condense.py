@@ -129,3 +129,13 @@ def test_of_very_many_flops_the_last_stay(tmp_path: Path, monkeypatch: pytest.Mo
     assert found.events.flop.tolist() == [False, True, True, True]
     assert found.summaries.flops.tolist() == [7]
     assert any("without 4 flops" in note for note in found.notes)
+
+
+def test_a_window_ends_between_two_groups_of_chunks(tmp_path: Path) -> None:
+    # 100,000 reports in a tenth of a second, which are read in several groups; the mark is within.
+    reports = [report(1, 900 * n, n / 1e5, 2.0) for n in range(100_000)]
+    path = write(tmp_path / "a.tpc", reports, [900 * 30_000])
+    rows = read_with_room(path, 10).summaries
+    assert rows.begin_ns.tolist() == [0, 900 * 30_001]
+    assert rows.end_ns.tolist() == [900 * 30_000, 900 * 99_999]
+    assert rows.count.tolist() == [30_001, 69_999]
