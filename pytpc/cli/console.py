@@ -7,11 +7,11 @@ import sys
 import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
 import click
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import Progress
 from rich.table import Table
 from rich.text import Text
 
@@ -20,6 +20,9 @@ from pytpc.build.reconcile import remark
 from pytpc.cli.selecting import place_of
 from pytpc.static.loops import inner_loops
 from pytpc.static.static_info import StaticInfo
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
 
 Advance = Callable[[int, int], None]
 
@@ -63,25 +66,30 @@ def warn(text: str) -> None:
 def progress(what: str) -> Iterator[Advance]:
     """Show progress after two seconds: a bar, or lines if the output is piped."""
     console = Console(stderr=True)
-    bar = Progress(console=console, transient=True)
-    task = bar.add_task(escape(plain(what)), total=None)
+    bar: Progress | None = None
     told = time.monotonic()
 
     def advance(done: int, total: int) -> None:
-        nonlocal told
-        bar.update(task, completed=done, total=total)
+        nonlocal told, bar
         if time.monotonic() - told < _SILENT_S:
             return
-        if console.is_terminal:
-            bar.start()
-        else:
+        if not console.is_terminal:
             click.echo(f"{plain(what)}: {done:,} of {total:,}", err=True)
             told = time.monotonic()
+            return
+        if bar is None:
+            # Most commands never show one, and its module is a tenth of their start.
+            from rich.progress import Progress  # noqa: PLC0415
+
+            bar = Progress(console=console, transient=True)
+            bar.add_task(escape(plain(what)), total=None)
+            bar.start()
+        bar.update(bar.task_ids[0], completed=done, total=total)
 
     try:
         yield advance
     finally:
-        if bar.live.is_started:
+        if bar is not None:
             bar.stop()
 
 
