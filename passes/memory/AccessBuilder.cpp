@@ -109,16 +109,23 @@ static bool takesOne(const CallBase &Call, unsigned N, const Rule *Row) {
          Callee->getName().starts_with("_ZN");
 }
 
-/// True if \p Call, of a function without a body, cannot write the object that
-/// its argument \p N points to.
+/// True if \p Call, of a function whose body is not analysed, cannot write the
+/// object that its argument \p N points to.
 bool AccessBuilder::isConstArgument(const CallBase &Call, unsigned N) {
   const Function *Callee = Call.getCalledFunction();
-  if (!Callee || !Callee->isDeclaration())
+  if (!Callee)
     return false;
   auto [It, IsNew] = ConstArguments.try_emplace(Callee);
   if (IsNew)
     It->second = constArguments(*Callee);
   return N < It->second.size() && It->second.test(N);
+}
+
+/// True if \p Call calls a destructor.
+static bool isDestructor(const CallBase &Call) {
+  const Function *Callee = Call.getCalledFunction();
+  return Callee && Call.arg_size() == 1 && Callee->getName().contains("D") &&
+         StringRef(qualifiedName(Callee->getName())).contains("::~");
 }
 
 /// Records what \p Call can write.
@@ -127,11 +134,11 @@ void AccessBuilder::fileCall(CallBase &Call) {
   const Rule *Row = Rules.match(Call);
   if (Row && Row->Kind == Rule::Text && Row->Relation != "copy")
     return;
-  if (endsLife(Call))
+  bool Opaque = Calls.callees(Call).empty();
+  if (endsLife(Call) || (Opaque && isDestructor(Call)))
     return;
   if (const Value *Pointer = Row ? alwaysReplaced(Call, *Row) : nullptr)
     fileReplacing(Call, Pointer);
-  bool Opaque = Calls.callees(Call).empty();
   const ContainerMethod *Method = Rules.container(Call);
   if (Method && Method->Writes)
     putInto(Call);

@@ -120,7 +120,7 @@ SmallVector<const CalledBack::Callable *, 2>
 CalledBack::handedBy(const CallBase &Call) {
   SmallVector<const Callable *, 2> Found;
   const Function *Callee = Call.getCalledFunction();
-  if (!Callee || !Callee->isDeclaration() || Callee->isIntrinsic() ||
+  if (!Callee || !Callee->isDeclarationForLinker() || Callee->isIntrinsic() ||
       callsNothing(Callee->getName()))
     return Found;
   for (const Use &Arg : Call.args())

@@ -137,8 +137,9 @@ void Reaching::addRunning(const Instruction &I, Running &Out) {
   for (const Function *Callee : Calls.callees(*Call))
     Out.Functions.insert(Callee);
   const Function *Callee = Call->getCalledFunction();
-  Out.Anything |= Unresolved.contains(Call) ||
-                  (Callee && Callee->isDeclaration() && letsOthersRun(*Callee));
+  Out.Anything |=
+      Unresolved.contains(Call) ||
+      (Callee && Callee->isDeclarationForLinker() && letsOthersRun(*Callee));
   for (const CalledBack::Callable *Object : Handed.handedBy(*Call)) {
     Out.Anything |=
         Object->Unknown || (Object->Kept && AllHandedOn.size() > MaxRun);

@@ -275,7 +275,7 @@ static std::string inheritedPart(const Value *Pointer, const Argument *This,
 static std::string inheritedObject(const CallBase &Call, const Argument *This,
                                    const OwnClasses &Own) {
   const Function *Callee = Call.getCalledFunction();
-  if (!Callee || !Callee->isDeclaration() || endsLife(Call) ||
+  if (!Callee || !Callee->isDeclarationForLinker() || endsLife(Call) ||
       !Callee->getName().starts_with("_ZN") ||
       Callee->getName().starts_with("_ZNK"))
     return "";

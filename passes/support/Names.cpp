@@ -196,8 +196,9 @@ static bool isOneArgument(StringRef Type) {
 bool takesConst(StringRef Type) {
   if (!Type.consume_back(" const&") && !Type.consume_back(" const*"))
     return false;
-  bool LeadsElsewhere = Type.contains('*') || Type.contains("_ptr<") ||
-                        Type.contains("function<");
+  // A function object is not changed by being called; what it calls is seen
+  // where that is done.
+  bool LeadsElsewhere = Type.contains('*') || Type.contains("_ptr<");
   return !LeadsElsewhere;
 }
 
@@ -239,7 +240,7 @@ bool waitsByName(const Function &F) {
 
 bool endsLife(const CallBase &Call) {
   const Function *F = Call.getCalledFunction();
-  return F && F->isDeclaration() &&
+  return F && F->isDeclarationForLinker() &&
          (givesMemoryBack(F->getName()) || isDestructor(F->getName()));
 }
 
