@@ -147,6 +147,11 @@ void Follower::load(const State &S, Instruction &Write,
       Known =
           std::make_unique<SmallVector<ScalarPart, 1>>(Pointers.partsOf(*Load));
     ArrayRef<ScalarPart> Read = *Known;
+    // One of several values, such as the result of std::min, is no formula.
+    if (S.How.Variables && Read.size() > 1) {
+      stopAt(ValueEnd::Mixed, Load);
+      continue;
+    }
     bool IsWide = any_of(Read, [](const ScalarPart &P) { return P.Size; });
     if (!WasWide && !IsWide) {
       Next.In = S.In;
