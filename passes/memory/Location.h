@@ -18,7 +18,9 @@ namespace tpc {
 struct Location {
   const llvm::Value *Root = nullptr;
   StepPath Path;
-  Nth RootItem = {}; ///< if the root is an array
+  /// If the root is an array: the element. If it is an allocation whose type is
+  /// not known: the byte.
+  Nth RootItem = {};
 
   /// The element at the end of the path.
   Nth item() const { return Path.empty() ? RootItem : Path.back().Item; }

@@ -100,6 +100,10 @@ void LocationTypes::enterElement(Location &L) const {
 
 void LocationTypes::enterScalar(Location &L) {
   enterElement(L);
+  // In an allocation, the scalar at its beginning.
+  if (isa_and_nonnull<CallBase>(L.Root) && L.Path.empty() &&
+      L.RootItem.Number == Nth::Whole)
+    L.RootItem = {0};
   while (auto *T = dyn_cast_or_null<StructType>(typeAt(L))) {
     if (T->isOpaque() || T->getNumElements() == 0 || L.Path.size() >= MaxPath)
       return;
@@ -314,9 +318,9 @@ bool LocationTypes::contains(Type *Outer, unsigned Inner) {
   return Is;
 }
 
-static void print(raw_ostream &OS, Nth Item) {
+static void print(raw_ostream &OS, Nth Item, StringRef Unit = "") {
   if (Item.isNumber())
-    OS << '[' << Item.Number << ']';
+    OS << '[' << Unit << Item.Number << ']';
   else if (Item.Number == Nth::Any)
     OS << "[any]";
 }
@@ -324,13 +328,10 @@ static void print(raw_ostream &OS, Nth Item) {
 void LocationTypes::print(raw_ostream &OS, const Location &L) const {
   if (L.Root)
     L.Root->printAsOperand(OS, false);
-  tpc::print(OS, L.RootItem);
+  tpc::print(OS, L.RootItem, isa_and_nonnull<CallBase>(L.Root) ? "byte " : "");
   for (const Step &S : L.Path) {
     if (!S.isField()) {
-      OS << (S.Type == Step::Element ? "[element" : "[byte ");
-      if (S.Type == Step::Bytes)
-        OS << S.Index;
-      OS << ']';
+      OS << "[element]";
       continue;
     }
     const StructType *T = classOf(S);

@@ -10,6 +10,8 @@
 #include "llvm/IR/Operator.h"
 #include "llvm/IR/PatternMatch.h"
 
+#include <limits>
+
 using namespace llvm;
 
 namespace tpc {
@@ -32,22 +34,34 @@ static bool isAllocation(const Value *V) {
 }
 
 /// Adds the place that \p Chain leads to in the allocation at \p L. The type
-/// there is not known, but the offset is.
+/// there is not known, but the offset is, or it is any element of an array. If
+/// the pointer \p Walks, it is moved on by \p Chain again and again.
 void PointsTo::addAllocated(const Location &L,
-                            ArrayRef<const GEPOperator *> Chain,
+                            ArrayRef<const GEPOperator *> Chain, bool Walks,
                             Locations &Out) {
-  int64_t Bytes = L.Path.empty() ? 0 : L.Path.back().Index;
+  // A library allocates for many objects at one place: vectors, matrices.
+  bool IsArray = Sources.has(*cast<CallBase>(L.Root)->getFunction());
+  Location Here = L;
+  int64_t Bytes = L.RootItem.isNumber() ? L.RootItem.Number : 0;
+  bool Known = L.RootItem.Number != Nth::Any;
   for (const GEPOperator *GEP : Chain) {
     APInt Offset(Layout.getIndexTypeSizeInBits(GEP->getType()), 0);
-    if (!GEP->accumulateConstantOffset(Layout, Offset))
+    bool IsConstant = GEP->accumulateConstantOffset(Layout, Offset);
+    if (!IsConstant && !IsArray)
       return;
-    Bytes += Offset.getSExtValue();
+    Known &= IsConstant && !(Walks && IsArray);
+    if (IsConstant)
+      Bytes += Offset.getSExtValue();
   }
-  if (Bytes < 0)
+  if (Known && Bytes < 0)
     return;
-  Location Here{L.Root, {}};
-  if (Bytes)
-    Here.Path.push_back({Step::Bytes, static_cast<unsigned>(Bytes)});
+  if (!Known)
+    Here.RootItem = {Nth::Any};
+  else if (Bytes)
+    Here.RootItem = {static_cast<unsigned>(
+        std::min<int64_t>(Bytes, std::numeric_limits<int>::max()))};
+  else
+    Here.RootItem = {};
   addTo(Out, std::move(Here));
 }
 
@@ -107,24 +121,23 @@ void PointsTo::addPointees(const Value *Pointer, Locations &Out) {
     Objects.insert(Objects.begin(), Location());
   // A pointer that moves on by an element each time it is computed.
   bool Walks = !Rooted && !isa<Argument>(Base);
-  for (const Location &L : Objects)
-    followChain(L, Chain, Walks, Out);
+  for (const Location &L : Objects) {
+    if (!isa_and_nonnull<CallBase>(L.Root) || !L.Path.empty())
+      followChain(L, Chain, Walks, Out);
+    // If the path names the class, it means all objects of the class.
+    else if (none_of(Chain, [](const GEPOperator *GEP) {
+               const auto *S =
+                   dyn_cast<StructType>(GEP->getSourceElementType());
+               return S && !S->isLiteral();
+             }))
+      addAllocated(L, Chain, isa<PHINode>(Base), Out);
+  }
 }
 
 /// Adds the place that \p Chain, whose last element is next to \p L, leads to
 /// from \p L. If the pointer \p Walks, it can be many elements further on.
 void PointsTo::followChain(Location L, ArrayRef<const GEPOperator *> Chain,
                            bool Walks, Locations &Out) {
-  if (L.Root && isa<CallBase>(L.Root) &&
-      (L.Path.empty() || L.Path.back().Type == Step::Bytes)) {
-    // If the path names the class, it means all objects of the class.
-    if (none_of(Chain, [](const GEPOperator *GEP) {
-          const auto *S = dyn_cast<StructType>(GEP->getSourceElementType());
-          return S && !S->isLiteral();
-        }))
-      addAllocated(L, Chain, Out);
-    return;
-  }
   bool Unknown = !L.isKnown();
   size_t Length = L.Path.size();
   int64_t Bytes = 0;
@@ -240,13 +253,17 @@ Locations PointsTo::copied(const MemTransferInst &Copy, const Value *Pointer) {
 
 void PointsTo::addElements(const Value *Container, Locations &Out) {
   for (Location L : resolve(Container, false)) {
-    L.Path.push_back({Step::Element, 0});
+    // The elements of a container that is an element count as its own: a list
+    // may contain lists of its own class.
+    if (!L.isElement())
+      L.Path.push_back({Step::Element, 0});
     addTo(Out, std::move(L));
   }
 }
 
 PointsTo PointsToAnalysis::run(Module &M, ModuleAnalysisManager &AM) {
-  PointsTo R(M.getDataLayout(), AM.getResult<LocationTypesAnalysis>(M));
+  PointsTo R(M.getDataLayout(), AM.getResult<LocationTypesAnalysis>(M),
+             UserSources(AM.getResult<OptionsAnalysis>(M)));
   PointsToSolver(R, AM.getResult<AliasesAnalysis>(M),
                  AM.getResult<SimpleCallGraph>(M),
                  AM.getResult<RuleAnalysis>(M), M)

@@ -20,6 +20,7 @@
 #ifndef TPC_POINTSTO_H
 #define TPC_POINTSTO_H
 
+#include "Options.h"
 #include "memory/LocationTypes.h"
 
 #include "llvm/ADT/DenseMap.h"
@@ -34,8 +35,9 @@ const llvm::Value *containerOf(const llvm::CallBase &Call);
 
 class PointsTo {
 public:
-  PointsTo(const llvm::DataLayout &Layout, LocationTypes &Types)
-      : Layout(Layout), Types(Types) {}
+  PointsTo(const llvm::DataLayout &Layout, LocationTypes &Types,
+           UserSources Sources)
+      : Layout(Layout), Types(Types), Sources(std::move(Sources)) {}
 
   /// The locations that \p Pointer can point to. With \p Scalar, a class is
   /// replaced by the scalar at its beginning: what a load or store of a scalar
@@ -68,11 +70,12 @@ private:
   void followChain(Location L, llvm::ArrayRef<const llvm::GEPOperator *> Chain,
                    bool Walks, Locations &Out);
   void addAllocated(const Location &L,
-                    llvm::ArrayRef<const llvm::GEPOperator *> Chain,
+                    llvm::ArrayRef<const llvm::GEPOperator *> Chain, bool Walks,
                     Locations &Out);
 
   const llvm::DataLayout &Layout;
   LocationTypes &Types;
+  UserSources Sources;
   /// What pointers that are not computed on the spot can lead to: arguments,
   /// results, phis, and pointers in memory.
   llvm::DenseMap<const llvm::Value *, Locations> Targets;

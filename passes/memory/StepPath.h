@@ -40,9 +40,8 @@ struct Nth {
 /// of the field, the class of the source (see DebugTypes; 0 if it is not known)
 /// and, if the field is an array, the element.
 struct Step {
-  /// Not classes: the step from a container to its elements, and a step by a
-  /// number of bytes (the index) into an allocation of unknown type.
-  static constexpr unsigned Element = ~0U, Bytes = ~0U - 1;
+  /// Not a class: the step from a container to its elements.
+  static constexpr unsigned Element = ~0U;
 
   unsigned Type;
   unsigned Index;
@@ -60,7 +59,7 @@ struct Step {
   }
   /// mayEqual(), and the same elements of an array.
   bool isSame(const Step &O) const { return mayEqual(O) && Item == O.Item; }
-  bool isField() const { return Type < Bytes; }
+  bool isField() const { return Type != Element; }
 };
 
 class StepPath {
