@@ -79,6 +79,7 @@ static const Section Sections[] = {
     {"configs", Rule::Config, ConfigKeys, {}},
     {"text", Rule::Text, TextKeys, TextKeys},
     {"held", Rule::Held, HeldKeys, TextKeys},
+    {"properties", Rule::Property, TextKeys, TextKeys},
 };
 
 static constexpr NameList NameLists[] = {

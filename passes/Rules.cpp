@@ -115,13 +115,12 @@ static bool hasTypes(const Function &F, const Rule &R) {
          });
 }
 
-/// True if \p F is a method of std::string, or an operator with a std::string
-/// operand. Many classes have operators of the same name.
-static bool takesText(const Function &F, StringRef Name) {
-  return Name.contains("basic_string::") ||
-         any_of(parameterTypes(F), [](const std::string &T) {
-           return StringRef(T).starts_with("std::__cxx11::basic_string<char,");
-         });
+/// True if \p F, a function, has a std::string operand. Many classes have
+/// operators of the same name.
+static bool takesText(const Function &F) {
+  return any_of(parameterTypes(F), [](const std::string &T) {
+    return StringRef(T).starts_with("std::__cxx11::basic_string<char,");
+  });
 }
 
 const Rule *Rules::rowOf(const Function &F, StringRef Name) const {
@@ -131,7 +130,7 @@ const Rule *Rules::rowOf(const Function &F, StringRef Name) const {
   for (const Rule &R : It->second) {
     unsigned Leading = (F.hasStructRetAttr() ? 1 : 0) + (R.Method ? 1 : 0);
     if ((!R.Arity || F.arg_size() == Leading + *R.Arity) && hasTypes(F, R) &&
-        (R.Kind != Rule::Text || takesText(F, Name)))
+        (R.Kind != Rule::Text || R.Method || takesText(F)))
       return &R;
   }
   return nullptr;
@@ -152,11 +151,17 @@ const Rules::Match &Rules::match(const Function &F) const {
   };
   M.Opaque = any_of(OpaquePrefixes, Begins);
   M.Kept = any_of(KeptPrefixes, Begins);
-  auto [Class, Method] = StringRef(M.Name).rsplit("::");
+  // A conversion has a type with scopes of its own, and puts nothing in.
+  StringRef Name = M.Name;
+  size_t Conversion = Name.find("::operator ");
+  bool Converts = Conversion != StringRef::npos;
+  auto [Class, Method] = Converts ? std::pair(Name.take_front(Conversion),
+                                              Name.drop_front(Conversion + 2))
+                                  : Name.rsplit("::");
   if (ContainerClasses.contains(Class))
-    M.Container = ContainerMethod{!F.getName().starts_with("_ZNK") &&
-                                  !ReadingMethods.contains(Method) &&
-                                  !Method.starts_with("~")};
+    M.Container = ContainerMethod{
+        !F.getName().starts_with("_ZNK") && !Converts &&
+        !ReadingMethods.contains(Method) && !Method.starts_with("~")};
   return M;
 }
 

@@ -43,6 +43,7 @@ struct Rule {
     Config,   ///< passes a class whose fields are all parameters
     Text,     ///< compares or copies text
     Held,     ///< puts a number into an object, or takes it out
+    Property, ///< says something about a list or struct, such as its size
   };
   /// A part of the name that a row of kind Naming makes.
   struct Part {
@@ -76,7 +77,7 @@ struct Rule {
   unsigned TargetArgument = 0;
   /// For text: the operator that the result stands for, `compare` if the result
   /// is to be compared with zero, `copy` if the call copies text. For an object
-  /// that holds a number: `into` or `outof`.
+  /// that holds a number: `into` or `outof`. For a property: its name.
   std::string Relation;
 };
 
@@ -115,6 +116,11 @@ public:
   /// comparisons of its caller.
   bool isTransparent(llvm::StringRef Name) const {
     return Transparent.contains(Name);
+  }
+
+  /// True for the qualified name of a container class.
+  bool isContainer(llvm::StringRef Class) const {
+    return ContainerClasses.contains(Class);
   }
 
   /// True if a function of this qualified name only counts references to an
@@ -200,6 +206,10 @@ public:
   }
   /// See Rules::isSilent; works for inlined functions too.
   bool isSilent(const llvm::DISubprogram &F) const { return inlined(F).Silent; }
+  /// See Rules::isContainer.
+  bool isContainer(llvm::StringRef Class) const {
+    return Tables->isContainer(Class);
+  }
   /// The container method that \p Call calls, or null.
   const ContainerMethod *container(const llvm::CallBase &Call) const;
   /// True if \p F is never inlined, however small it is.

@@ -173,6 +173,22 @@ SmallVector<LoadInst *, 8> VisibleWrites::usesOf(const Instruction &Write,
   return All.takeVector();
 }
 
+SmallVector<LoadInst *, 8>
+VisibleWrites::elementsFrom(const Instruction &Write,
+                            const Locations &Elements) {
+  SmallSetVector<LoadInst *, 8> All;
+  for (const Location &L : Elements) {
+    auto [Own, Copied] = Accesses.readsOf(L);
+    All.insert(Own.begin(), Own.end());
+    All.insert(Copied.begin(), Copied.end());
+  }
+  All.remove_if([&](LoadInst *Load) {
+    return Load->getType()->isPointerTy() ||
+           !is_contained(definitionsOf(*Load), &Write);
+  });
+  return All.takeVector();
+}
+
 //===----------------------------------------------------------------------===//
 // Whole objects
 //===----------------------------------------------------------------------===//

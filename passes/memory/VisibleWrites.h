@@ -28,6 +28,11 @@ public:
   llvm::SmallVector<llvm::LoadInst *, 8> usesOf(const llvm::Instruction &Write,
                                                 const llvm::Value *Pointer);
 
+  /// The loads that can read a number that \p Write, a call, puts into the list
+  /// with the elements \p Elements, or into a list that is one of them.
+  llvm::SmallVector<llvm::LoadInst *, 8>
+  elementsFrom(const llvm::Instruction &Write, const Locations &Elements);
+
   /// The writes of the scalar at \p L that \p At, which reads it at \p Pointer,
   /// can see.
   llvm::SmallVector<llvm::Instruction *, 8>

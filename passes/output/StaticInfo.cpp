@@ -159,6 +159,9 @@ std::string Describer::variable(const Comparison &C) const {
 }
 
 static json::Value describeTransform(const Transform &T) {
+  // Of a list, nobody can compute what its parameter should be.
+  if (!T.Part.empty())
+    return json::Object{{"kind", "expression"}, {"text", T.text()}};
   switch (T.kind()) {
   case Transform::None:
     return nullptr;

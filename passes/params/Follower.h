@@ -93,7 +93,10 @@ private:
   void dropOwnSides(size_t From);
   void addFlag(const State &S, llvm::Value *V, Decision D, unsigned Read,
                bool IsOperand = false);
+  void addTexts(unsigned N, const Locations &Objects, const Transform &How);
   void followText(unsigned N);
+  void followList(unsigned N);
+  void followAll(unsigned N);
   llvm::SmallVector<Decision, 2> followOutcome(llvm::Value *Outcome,
                                                const CallPath *Path);
   bool followRepacked(const State &S, llvm::Use &U);

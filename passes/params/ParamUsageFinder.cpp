@@ -6,8 +6,10 @@
 #include "params/Follower.h"
 #include "params/Idioms.h"
 #include "params/ParamCallFinder.h"
+#include "params/ParameterObjects.h"
 #include "params/Registers.h"
 #include "params/TextUsage.h"
+#include "support/Names.h"
 #include "support/Print.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
@@ -298,16 +300,20 @@ static bool isNumber(StringRef Type) {
   return is_contained(Numbers, Type);
 }
 
-/// Follows text as an object: the calls that get it compare or copy it.
-void Follower::followText(unsigned N) {
+/// The object that \p Read makes; null if there is none.
+static const Value *madeBy(const ParameterRead &Read) {
+  if (Read.Target || !Read.Call->hasStructRetAttr())
+    return Read.Target;
+  return Read.Call->getArgOperand(0);
+}
+
+/// Adds the comparisons of the texts at \p Objects, which a list contains if
+/// \p How says so.
+void Follower::addTexts(unsigned N, const Locations &Objects,
+                        const Transform &How) {
   const ParameterRead &Read = Reads[N];
-  const Value *Object = Read.Target;
-  if (!Object && Read.Call->hasStructRetAttr())
-    Object = Read.Call->getArgOperand(0);
-  if (!Object)
-    return stopAt(ValueEnd::NoNumber, Read.Call);
-  Seen.clear();
-  TextUsage::Found Found = Texts.comparisonsOf(Object);
+  TextUsage::Found Found =
+      Texts.comparisonsOf(Objects, /*IsList=*/!How.Part.empty());
   for (unsigned Lost = 0; Lost < Found.Lost; ++Lost)
     stopAt(ValueEnd::Mixed, Read.Call);
   for (const TextComparison &T : Found.Comparisons) {
@@ -315,11 +321,74 @@ void Follower::followText(unsigned N) {
     C.Read = N;
     C.Flag = T.Outcome;
     C.TextRelation = T.Relation;
+    C.How = How;
     C.ByArgument =
         T.ByArgument && Calls.callers(T.Outcome->getFunction()).size() > 1;
     C.Decisions = followOutcome(T.Outcome, nullptr);
     Usage.Comparisons.push_back(std::move(C));
   }
+}
+
+/// Follows text as an object: the calls that get it compare or copy it.
+void Follower::followText(unsigned N) {
+  const ParameterRead &Read = Reads[N];
+  Locations Objects;
+  for (const Value *Field : Read.Values)
+    append_range(Objects, Pointers.handed(Field, /*IsOne=*/true));
+  if (const Value *Object = Read.Values.empty() ? madeBy(Read) : nullptr)
+    Objects = Pointers.handed(Object, /*IsOne=*/true);
+  else if (Read.Values.empty())
+    return stopAt(ValueEnd::NoNumber, Read.Call);
+  Seen.clear();
+  addTexts(N, Objects, {});
+}
+
+/// A list or struct: its elements are followed, of which each may be the value
+/// that is compared, and what the program asks about the list itself.
+void Follower::followList(unsigned N) {
+  const ParameterRead &Read = Reads[N];
+  const Value *List = madeBy(Read);
+  Locations Elements;
+  if (List && Read.Values.empty())
+    Pointers.addElements(List, Elements);
+  if (Elements.empty())
+    return stopAt(ValueEnd::NoNumber, Read.Call);
+  size_t Before = Usage.Comparisons.size(), HopsBefore = Usage.Hops.size();
+  Transform How;
+  How.Part = "element";
+  Seen.clear();
+  SeenOrigins.clear();
+  for (LoadInst *Load : Writes.elementsFrom(*Read.Call, Elements))
+    push({Load, How, nullptr, true}, Read.Call);
+  for (const TextUsage::Property *P : Texts.propertiesOf(Elements)) {
+    How.Part = P->Row->Relation;
+    for (Value *V : valuesOf(*P->Call))
+      push({V, How, nullptr, true}, Read.Call);
+  }
+  bool IsUnread = Usage.Hops.size() == HopsBefore;
+  followAll(N);
+  How.Part = "element";
+  Seen.clear();
+  // The list itself can be compared with a text.
+  append_range(Elements, Pointers.handed(List, /*IsOne=*/true));
+  addTexts(N, Elements, How);
+  if (Usage.Comparisons.size() != Before)
+    return;
+  forgetHops(HopsBefore);
+  if (IsUnread)
+    stopAt(ValueEnd::Unread, Read.Call);
+}
+
+/// Follows the values that were pushed to where they are compared.
+void Follower::followAll(unsigned N) {
+  size_t Before = Usage.Comparisons.size();
+  while (std::optional<State> At = takeNext()) {
+    const State &S = *At;
+    Here = S.Way;
+    for (Use &U : S.V->uses())
+      followUse(S, U, N);
+  }
+  dropOwnSides(Before);
 }
 
 void Follower::followRead(unsigned N) {
@@ -329,6 +398,8 @@ void Follower::followRead(unsigned N) {
   Here = Hop::None;
   if (isText(R.Type))
     return followText(N);
+  if (Rules.isContainer(plainType(R.Type)))
+    return followList(N);
   if (!isNumber(R.Type))
     return stopAt(ValueEnd::NoNumber, R.Call);
   Seen.clear();
@@ -348,13 +419,7 @@ void Follower::followRead(unsigned N) {
       Written.push_back({std::move(L)});
     load({R.Call, {}, nullptr, true}, *R.Call, Written, Loads);
   }
-  while (std::optional<State> At = takeNext()) {
-    const State &S = *At;
-    Here = S.Way;
-    for (Use &U : S.V->uses())
-      followUse(S, U, N);
-  }
-  dropOwnSides(Before);
+  followAll(N);
   if (Usage.Comparisons.size() == Before)
     forgetHops(HopsBefore);
 }

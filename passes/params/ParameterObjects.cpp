@@ -59,9 +59,7 @@ static MadeObject madeBy(unsigned Read, Value *Made, PointsTo &Pointers) {
   return O;
 }
 
-/// The values that \p Call, an accessor, returns: its result, or the loads
-/// through the reference that it returns.
-static SmallVector<Value *, 1> valuesOf(CallBase &Call) {
+SmallVector<Value *, 1> valuesOf(CallBase &Call) {
   if (!Call.getType()->isPointerTy())
     return {&Call};
   SmallVector<Value *, 1> Loads;
@@ -140,11 +138,12 @@ static std::string nameWithScopes(const DICompositeType &Class) {
   return Name;
 }
 
-/// A field of a class: its name, its type, its default, and where it is read.
+/// A field of a class: its name, its type, its default, and where it is read:
+/// loads or, for text, pointers to it.
 struct Field {
   std::string Name, Type;
   json::Value Default = nullptr;
-  SmallVector<Value *, 1> Loads;
+  SmallVector<Value *, 1> Values;
 };
 
 /// Gives \p Fields of the class \p Name the defaults that the generated code
@@ -173,6 +172,49 @@ static void findDefaults(Module &M, StringRef Name, ModuleAnalysisManager &AM,
   }
 }
 
+/// The field of the class \p Name that \p Where leads to; none if it leads
+/// elsewhere.
+static std::optional<Step> fieldAt(const Location &Where, StringRef Name,
+                                   const LocationTypes &Types) {
+  if (!Where.isField())
+    return std::nullopt;
+  const DICompositeType *Class = Types.sourceClassOf(Where.Path.back());
+  if (!Class || nameWithScopes(*Class) != Name)
+    return std::nullopt;
+  return Where.Path.back();
+}
+
+/// Adds to \p Fields those of the class \p Name that are text and that user
+/// code gets pointers to.
+static void addTexts(Module &M, StringRef Name, ModuleAnalysisManager &AM,
+                     std::map<unsigned, Field> &Fields) {
+  const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
+  const LocationTypes &Types = AM.getResult<LocationTypesAnalysis>(M);
+  PointsTo &Pointers = AM.getResult<PointsToAnalysis>(M);
+  UserSources Sources(AM.getResult<OptionsAnalysis>(M));
+  auto IsText = [](Type *T) {
+    const auto *Class = dyn_cast_or_null<StructType>(T);
+    return Class && plainClassName(*Class) == "std::__cxx11::basic_string";
+  };
+  for (Function &F : definedFunctions(M)) {
+    if (Rules.isOpaque(F) || !Sources.has(F))
+      continue;
+    for (Instruction &I : instructions(F)) {
+      auto *GEP = dyn_cast<GetElementPtrInst>(&I);
+      if (!GEP || !IsText(GEP->getResultElementType()))
+        continue;
+      for (const Location &L : Pointers.resolve(GEP, /*Scalar=*/false))
+        if (std::optional<Step> S = fieldAt(L, Name, Types)) {
+          Field &Found = Fields[S->Index];
+          Found.Name = Types.fieldName(*S);
+          Found.Type = "std::string";
+          if (!is_contained(Found.Values, GEP))
+            Found.Values.push_back(GEP);
+        }
+    }
+  }
+}
+
 /// The fields of the class \p Name that user code reads, by position.
 static std::map<unsigned, Field> fieldsOf(Module &M, StringRef Name,
                                           ModuleAnalysisManager &AM) {
@@ -182,20 +224,19 @@ static std::map<unsigned, Field> fieldsOf(Module &M, StringRef Name,
   UserSources Sources(Opts);
   std::map<unsigned, Field> Fields;
   for (const auto &[I, Where] : AM.getResult<ClassObjectAccess>(M).loads()) {
-    if (Where.Path.empty() || Rules.isOpaque(*I->getFunction()) ||
-        !Sources.has(I->getDebugLoc()))
+    if (Rules.isOpaque(*I->getFunction()) || !Sources.has(I->getDebugLoc()))
       continue;
-    const Step &Last = Where.Path.back();
-    const DICompositeType *Class = Types.sourceClassOf(Last);
-    if (!Class || nameWithScopes(*Class) != Name)
+    std::optional<Step> S = fieldAt(Where, Name, Types);
+    if (!S)
       continue;
-    Field &F = Fields[Last.Index];
-    F.Name = Types.fieldName(Last);
-    if (const DIType *T = Types.sourceTypeOf(Last))
+    Field &F = Fields[S->Index];
+    F.Name = Types.fieldName(*S);
+    if (const DIType *T = Types.sourceTypeOf(*S))
       F.Type = T->getName();
-    if (!is_contained(F.Loads, I))
-      F.Loads.push_back(I);
+    if (!is_contained(F.Values, I))
+      F.Values.push_back(I);
   }
+  addTexts(M, Name, AM, Fields);
   return Fields;
 }
 
@@ -226,7 +267,7 @@ void findConfigs(Module &M, ModuleAnalysisManager &AM, Texts &Known,
       Reads.push_back(
           {S.Call, S.Row,
            joinNames(S.Namespace, F.Name.empty() ? DynamicName : F.Name),
-           F.Type, std::move(F.Default), nullptr, std::move(F.Loads), F.Name});
+           F.Type, std::move(F.Default), nullptr, std::move(F.Values), F.Name});
   }
 }
 

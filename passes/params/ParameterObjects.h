@@ -15,6 +15,10 @@ namespace tpc {
 
 class Texts;
 
+/// What \p Call, a method of an object that a read made, returns: its result,
+/// or the loads through the reference that it returns.
+llvm::SmallVector<llvm::Value *, 1> valuesOf(llvm::CallBase &Call);
+
 /// Adds to each read of \p Reads that makes an object the values that are taken
 /// out of it. A value taken out of an object that no read made becomes a read
 /// of its own, with an unknown name.

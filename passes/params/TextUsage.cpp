@@ -37,6 +37,28 @@ TextUsage::TextUsage(Module &M, PointsTo &Pointers, AccessIndex &Accesses,
       Numbers.push_back(
           {&Call, Pointers.handed(objectOf(Call, Row), /*IsOne=*/true)});
   });
+  forEachCall(M, Rules, Rule::Property, [&](CallBase &Call, const Rule &Row) {
+    Property P{&Call, &Row, {}};
+    if (const Value *List = objectOf(Call, Row))
+      Pointers.addElements(List, P.Elements);
+    Properties.push_back(std::move(P));
+  });
+}
+
+bool TextUsage::anyReaches(const Locations &From, const Locations &To) const {
+  return any_of(From, [&](const Location &F) {
+    return any_of(To,
+                  [&](const Location &T) { return Accesses.reaches(F, T); });
+  });
+}
+
+SmallVector<const TextUsage::Property *, 2>
+TextUsage::propertiesOf(const Locations &Elements) const {
+  SmallVector<const Property *, 2> Found;
+  for (const Property &P : Properties)
+    if (anyReaches(Elements, P.Elements))
+      Found.push_back(&P);
+  return Found;
 }
 
 SmallVector<CallBase *, 2> TextUsage::numbersFrom(const CallBase &Into,
@@ -44,11 +66,7 @@ SmallVector<CallBase *, 2> TextUsage::numbersFrom(const CallBase &Into,
   SmallVector<CallBase *, 2> Found;
   Locations Objects = Pointers.handed(objectOf(Into, Row), /*IsOne=*/true);
   for (const auto &[Call, From] : Numbers)
-    if (any_of(From, [&](const Location &L) {
-          return any_of(Objects, [&](const Location &O) {
-            return Accesses.reaches(O, L);
-          });
-        }))
+    if (anyReaches(Objects, From))
       Found.push_back(Call);
   return Found;
 }
@@ -74,13 +92,15 @@ static StringRef swapped(StringRef Relation) {
   return Relation == ">=" ? "<=" : Relation;
 }
 
-TextUsage::Found TextUsage::comparisonsOf(const Value *Object) const {
+TextUsage::Found TextUsage::comparisonsOf(Locations Objects,
+                                          bool IsList) const {
   Found Out;
-  Locations Objects = Pointers.handed(Object, /*IsOne=*/true);
   SmallPtrSet<const CallBase *, 8> Seen;
   for (unsigned Next = 0; Next < Objects.size() && Next < MaxObjects; ++Next) {
     const Location Here = Objects[Next];
-    auto IsHere = [&](const Location &L) { return L.mayBe(Here); };
+    auto IsHere = [&](const Location &L) {
+      return IsList ? Accesses.reaches(Here, L) : L.mayBe(Here);
+    };
     for (const Use &U : Uses) {
       StringRef Relation = U.Row->Relation;
       if (Relation == "copy") {

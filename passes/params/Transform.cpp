@@ -60,6 +60,7 @@ void Transform::call(StringRef Op, std::optional<double> Constant, bool First) {
   Transform Outer;
   Outer.Variables = Variables;
   Outer.Merged = Merged;
+  Outer.Part = Part;
   Outer.Inner = std::make_shared<const Application>(
       Application{Op.str(), std::move(*this), Constant, First});
   *this = std::move(Outer);
@@ -68,6 +69,7 @@ void Transform::call(StringRef Op, std::optional<double> Constant, bool First) {
 void Transform::combine(StringRef Op, std::string Name, bool First) {
   Transform Outer;
   Outer.Variables = Variables + 1;
+  Outer.Part = Part;
   Outer.Inner = std::make_shared<const Application>(Application{
       Op.str(), std::move(*this), std::nullopt, First, std::move(Name)});
   *this = std::move(Outer);
@@ -159,10 +161,17 @@ bool Transform::isNarrowing() const {
          Inner->Of.kind() == None;
 }
 
-std::string Transform::text() const {
-  if (kind() == None)
+/// The text of what is computed with.
+static std::string partText(StringRef Part) {
+  if (Part.empty())
     return "x";
-  std::string T = Inner ? applicationText(*Inner) : "x";
+  return Part == "element" ? "x[]" : (Part + "(x)").str();
+}
+
+std::string Transform::text() const {
+  std::string T = Inner ? applicationText(*Inner) : partText(Part);
+  if (kind() == None)
+    return T;
   if (Inner && !signOf(*Inner).empty() && (Scale != 1 || Offset != 0))
     T = "(" + T + ")";
   if (Scale == -1 && Inner)

@@ -36,6 +36,9 @@ struct Transform {
   unsigned Width = 0;
   unsigned Variables = 0; ///< operands that are not constant
   bool Merged = false; ///< x is one of several values that the program chooses
+  /// What of a parameter that is a list or struct is taken: `element`, or what
+  /// a row of `properties` calls it; empty for the value itself.
+  std::string Part = "";
 
   KindTy kind() const;
   void multiply(double Factor);
@@ -50,13 +53,14 @@ struct Transform {
   /// True for the plain difference to a value that is not constant: compared
   /// with zero, it compares the two.
   bool isDifference() const;
-  /// For people: `2 * sqrt(x + 1)`.
+  /// For people: `2 * sqrt(x + 1)`, `x[]` for an element of a list, `size(x)`.
   std::string text() const;
   /// True if the only steps truncate the value to fewer bits: it is expected to
   /// fit.
   bool isNarrowing() const;
   /// The same for programs (docs/reference/formats.md): a number, "x", or a
-  /// list of an operator and its operands. Not for kind WithVariables.
+  /// list of an operator and its operands. Not for kind WithVariables, and not
+  /// if there is a Part.
   llvm::json::Value tree() const;
 };
 

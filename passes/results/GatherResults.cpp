@@ -187,7 +187,9 @@ static Comparison comparisonOf(const ParameterComparison &P) {
   C.IsOperand = P.IsOperand;
   if (!P.How.isNarrowing())
     C.How = P.How;
-  C.Type = C.How.kind() != Transform::None    ? Comparison::Derived
+  C.How.Part = P.How.Part;
+  bool IsItself = C.How.kind() == Transform::None && C.How.Part.empty();
+  C.Type = !IsItself                          ? Comparison::Derived
            : P.Flag && P.TextRelation.empty() ? Comparison::Flag
                                               : Comparison::Parameter;
   C.Reads.push_back(P.Read);

@@ -199,12 +199,18 @@ bool Sides::isMeasured(const ParameterComparison &C,
     return O->Operand != C.Operand && decides(*O, Predicate);
   });
   // A value that was computed from the parameter alone is not measured,
-  // whatever library computed it. Most counters are configured too: they count
-  // up from a constant.
-  const bool IsPlain =
-      C.How.kind() == Transform::None && !isa<CallBase>(stripCasts(Own));
-  return (AreBoth || (isa<Constant>(Other) && IsPlain)) && !isConfigured(Own) &&
-         isConfigured(Other);
+  // whatever library computed it. Of a list, only the library knows. Most
+  // counters are configured too: they count up from a constant.
+  const bool IsPlain = C.How.kind() == Transform::None && C.How.Part.empty() &&
+                       !isa<CallBase>(stripCasts(Own));
+  if (!AreBoth && !(isa<Constant>(Other) && IsPlain))
+    return false;
+  // Elements are data where the other side is a parameter as a whole.
+  const bool IsData =
+      !C.How.Part.empty() && any_of(Others, [&](const ParameterComparison *O) {
+        return O->Operand != C.Operand && O->How.Part.empty();
+      });
+  return !isConfigured(Own) && (IsData || isConfigured(Other));
 }
 
 } // namespace tpc

@@ -41,10 +41,29 @@ static std::string taken(char *Text) {
   return S;
 }
 
+/// The demangler fails at the name of a conversion to an instance of a
+/// template. The most common one, std::string, has a short name too. Empty if
+/// \p Mangled is no such name.
+static std::string withShortString(StringRef Mangled) {
+  static constexpr StringLiteral Long =
+      "NSt7__cxx1112basic_stringIcSt11char_traitsIcESaIcEEE";
+  size_t At = Mangled.find(Long);
+  if (At == StringRef::npos || !Mangled.contains("cv"))
+    return "";
+  return (Mangled.take_front(At) + "Ss" + Mangled.drop_front(At + Long.size()))
+      .str();
+}
+
 std::string qualifiedName(StringRef Mangled) {
   ItaniumPartialDemangler Demangler;
-  std::string Name = Mangled.str();
-  if (Demangler.partialDemangle(Name.c_str()) || !Demangler.isFunction())
+  // What is demangled refers to the text.
+  std::string Name = Mangled.str(), Short;
+  if (Demangler.partialDemangle(Name.c_str())) {
+    Short = withShortString(Mangled);
+    if (Short.empty() || Demangler.partialDemangle(Short.c_str()))
+      return Name;
+  }
+  if (!Demangler.isFunction())
     return Name;
   std::string Scope =
       taken(Demangler.getFunctionDeclContextName(nullptr, nullptr));
