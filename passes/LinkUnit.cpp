@@ -6,6 +6,7 @@
 #include "calls/SimpleCallGraph.h"
 #include "control/IfStatements.h"
 #include "control/Throws.h"
+#include "instrument/Instances.h"
 #include "instrument/InstrumentBranches.h"
 #include "instrument/InstrumentReads.h"
 #include "memory/AccessIndex.h"
@@ -112,11 +113,15 @@ static void planReports(AnalysedModule &Analysed, ModuleAnalysisManager &AM,
     return;
   }
   const ParamCallFinder::Result &Reads = AM.getResult<ParamCallFinder>(Seen);
+  Instances Objects(Analysed, AM.getResult<DebugTypesAnalysis>(Seen), Reads);
   auto Plan = [&](const Comparison &C, bool IsUnsigned) {
-    if (std::optional<Report> Plan = planReport(C, IsUnsigned, Analysed))
-      Out.Reports.push_back(std::move(*Plan));
-    else
+    std::optional<Report> Plan = planReport(C, IsUnsigned, Analysed);
+    if (!Plan) {
       ++Out.NotInstrumented;
+      return;
+    }
+    Plan->Object = Objects.objectOf(C, *Plan->Before);
+    Out.Reports.push_back(std::move(*Plan));
   };
   for (const Comparison &C : R.Comparisons) {
     StringRef Type = Reads[C.Reads.front()].Type;

@@ -35,8 +35,8 @@ template <typename T> inline void setIf(bool Changes, T &To, T Value) {
 
 /// Adds one evaluation of finite values to a slot. \p Bits are those of the
 /// outcomes.
-inline void add(layout::Slot &To, uint32_t Bits, double Compared,
-                double Threshold) {
+[[gnu::always_inline]] inline void add(layout::Slot &To, uint32_t Bits,
+                                       double Compared, double Threshold) {
   layout::Summary &K = To.Kept;
   // A reader of the file sees from Begun and Count whether the process ended in
   // between.
@@ -67,8 +67,10 @@ void edges(Thread &T, Site &S, const Report &R);
 
 /// The same if the evaluation is no flop and needs no slow path; otherwise does
 /// nothing and returns false.
-inline bool edgesAtOnce(Thread &T, const Site &S, bool Result, uint32_t Bits,
-                        double Compared, double Threshold) {
+[[gnu::always_inline]] inline bool edgesAtOnce(Thread &T, const Site &S,
+                                               bool Result, uint32_t Bits,
+                                               double Compared,
+                                               double Threshold) {
   if (S.Number > T.PairCount ||
       T.PairsHome != SlotsHome.load(std::memory_order_relaxed) ||
       S.Last.load(std::memory_order_relaxed) != Result)

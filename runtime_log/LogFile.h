@@ -33,8 +33,9 @@ public:
 
   /// Writes one report if no slow path is needed; otherwise does nothing and
   /// returns false.
-  bool writeAtOnce(Thread &T, const Site &S, uint32_t Bits, double Compared,
-                   double Threshold) {
+  [[gnu::always_inline]] bool writeAtOnce(Thread &T, const Site &S,
+                                          uint32_t Bits, double Compared,
+                                          double Threshold) {
     if (T.File != this || T.Next == T.End || T.Simulated != -1 ||
         S.WrittenTo.load(std::memory_order_relaxed) != this ||
         TimeIsSimulated.load(std::memory_order_relaxed))

@@ -42,13 +42,15 @@ static void capped(Thread &T, Site &S, const Report &R) {
     emit(T, S, R, 0);
 }
 
-static void report(Thread &T, const Report &R) {
+static void report(Thread &T, Report R, const void *Object) {
   if (NowMode.load(std::memory_order_acquire) == Mode::NotStarted)
     startRuntime();
   Mode M = NowMode.load(std::memory_order_acquire);
-  Site *S = M == Mode::Off ? nullptr : sites().find(R.Key);
+  Site *S = M == Mode::Off ? nullptr : sites().find(R.Key, Object);
   if (!S)
     return;
+  if (S->Key.size() != S->Length)
+    R.Key = S->Key.c_str();
   if (M == Mode::Edges)
     edges(T, *S, R);
   else if (M == Mode::Light)
@@ -61,14 +63,13 @@ static void report(Thread &T, const Report &R) {
 
 /// One report during which the thread cannot be cancelled. It is a function of
 /// its own because cancellation is an exception that its handlers must not see.
-[[gnu::noinline]] static void uncancelled(const char *Key, bool Result,
-                                          double Cmp, double Thresh,
-                                          bool Res) noexcept {
+[[gnu::noinline]] static void uncancelled(const Report &R,
+                                          const void *Object) noexcept {
   try {
     Thread *T = ThisThread ? ThisThread : makeThread();
     ReportMark Mark(*T);
     if (Mark)
-      report(*T, {Key, Result, Cmp, Thresh, Res});
+      report(*T, R, Object);
     else
       T->Nested.fetch_add(1, std::memory_order_relaxed);
   } catch (...) {
@@ -79,19 +80,20 @@ static void report(Thread &T, const Report &R) {
 /// Handles everything that the fast path below does not. A thread must not be
 /// cancelled while it uses files, the console or roscpp's locks, so
 /// cancellation waits until the program reaches its own cancellation points.
-[[gnu::noinline]] static void slowly(const char *Key, bool Result, double Cmp,
-                                     double Thresh, bool Res) {
+[[gnu::noinline]] static void slowly(const Report &R, const void *Object) {
   int Cancelled;
   pthread_setcancelstate(PTHREAD_CANCEL_DISABLE, &Cancelled);
-  uncancelled(Key, Result, Cmp, Thresh, Res);
+  uncancelled(R, Object);
   // If the thread may be cancelled at any instruction, it ends here.
   pthread_setcancelstate(Cancelled, nullptr);
 }
 
 /// The evaluation if it needs no slow path; otherwise does nothing and returns
 /// false.
-static inline bool atOnce(Mode M, Thread &T, const Site &S, bool Result,
-                          double Cmp, double Thresh, bool Res) {
+[[gnu::always_inline]] static inline bool atOnce(Mode M, Thread &T,
+                                                 const Site &S, bool Result,
+                                                 double Cmp, double Thresh,
+                                                 bool Res) {
   if (M == Mode::Light)
     return isPassedOver(S, Result);
   uint32_t Bits = layout::bits(Result, Res);
@@ -100,20 +102,31 @@ static inline bool atOnce(Mode M, Thread &T, const Site &S, bool Result,
                                 ->writeAtOnce(T, S, Bits, Cmp, Thresh);
 }
 
-} // namespace tpc
-
-using namespace tpc;
-
-void log_one(char *key, bool result, double cmp, double thresh, bool res) {
+/// One evaluation under \p Key, of \p Object if that is not null.
+[[gnu::always_inline]] static inline void evaluated(const char *Key,
+                                                    bool Result, double Cmp,
+                                                    double Thresh, bool Res,
+                                                    const void *Object) {
   Mode M = NowMode.load(std::memory_order_acquire);
   if (M == Mode::Off)
     return;
   Thread *T = ThisThread;
   if (T && (M == Mode::FileEvery || M == Mode::Edges || M == Mode::Light)) {
     if (ReportMark Mark(*T); Mark)
-      if (const Site *S = sites().known(key);
-          S && atOnce(M, *T, *S, result, cmp, thresh, res))
+      if (const Site *S = sites().known(Key, Object);
+          S && atOnce(M, *T, *S, Result, Cmp, Thresh, Res))
         return;
   }
-  slowly(key, result, cmp, thresh, res);
+  slowly({Key, Result, Cmp, Thresh, Res}, Object);
+}
+
+} // namespace tpc
+
+void log_one(char *key, bool result, double cmp, double thresh, bool res) {
+  tpc::evaluated(key, result, cmp, thresh, res, nullptr);
+}
+
+void log_one_of(char *key, bool result, double cmp, double thresh, bool res,
+                const void *object) {
+  tpc::evaluated(key, result, cmp, thresh, res, object);
 }

@@ -20,6 +20,15 @@
 __attribute__((visibility("default"))) void
 log_one(char *key, bool result, double cmp, double thresh, bool res);
 
+/// The same for a comparison of an object that has parameters of its own. The
+/// evaluations of two objects of one class are reported apart.
+///
+/// \param object its address; nothing is read there
+__attribute__((visibility("default"))) void log_one_of(char *key, bool result,
+                                                       double cmp,
+                                                       double thresh, bool res,
+                                                       const void *object);
+
 /// Reports the full name of a parameter, before it is read.
 ///
 /// \param key    the key of the read, as in the static information
@@ -30,5 +39,10 @@ log_one(char *key, bool result, double cmp, double thresh, bool res);
 /// Safe in any thread; never throws.
 __attribute__((visibility("default"))) void
 log_read(char *key, const void *handle, const void *name, bool text) noexcept;
+
+/// The same for a read in a method of \p object, which has \p size bytes.
+__attribute__((visibility("default"))) void
+log_read_of(char *key, const void *handle, const void *name, bool text,
+            const void *object, unsigned long size) noexcept;
 
 #endif // TPC_LOGONE_H

@@ -5,6 +5,11 @@
 // each name of each read to the sink once, and again from time to time to a
 // sink whose readers may come later.
 //
+// If objects of one class read a parameter under different names, it also gives
+// which object is which: the objects that compare are numbered, and a number is
+// given with each name that was read in the object, and with each key that it
+// evaluates.
+//
 //===----------------------------------------------------------------------===//
 #ifndef TPC_READNAMES_H
 #define TPC_READNAMES_H
@@ -13,9 +18,12 @@
 
 #include <atomic>
 #include <cstdint>
+#include <map>
 #include <mutex>
 #include <set>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace tpc {
@@ -31,7 +39,13 @@ public:
 
   /// Keeps \p Name for the read \p Key, from any thread. Beyond Most names
   /// nothing is kept, with one warning.
-  void add(const char *Key, const std::string &Name);
+  /// It was read in the object at \p Object, of \p Size bytes, unless that is
+  /// null.
+  void add(const char *Key, const std::string &Name, const void *Object,
+           uint64_t Size);
+
+  /// Keeps that the site \p Key has the evaluations of \p Object.
+  void addObject(const std::string &Key, const void *Object);
 
   /// Gives \p To the names that it has not got; all of them if it is another
   /// sink than before, and again after 1 s, 2 s and so on up to every 32 s.
@@ -48,14 +62,32 @@ public:
   void unlock() { Lock.unlock(); }
 
 private:
+  struct Reader {
+    uintptr_t Begin, End;
+    const std::string *Name; ///< in Known
+    bool operator<(const Reader &R) const {
+      return std::tie(Begin, End, Name) < std::tie(R.Begin, R.End, R.Name);
+    }
+  };
+
+  const std::string *keep(std::string Text, size_t &Count);
+  void tell(const std::string &Of, uint32_t Object);
+  void tellOf(const Reader &R);
+
   std::mutex Lock; ///< for everything that follows
-  /// `KEY,NAME`. Its nodes stay where they are.
+  /// `KEY,NAME`, and what is told of objects. Its nodes stay where they are.
   std::set<std::string, std::less<>> Known;
   std::vector<const std::string *> InOrder;
   const Sink *Given = nullptr;
   size_t GivenCount = 0;
   int64_t AllGivenAt = 0, AgainNs = FirstAgainNs;
-  bool IsFull = false;
+  size_t NameCount = 0, ObjectCount = 0; ///< in Known
+  bool IsFull = false;                   ///< of names
+  std::map<std::string, const std::string *, std::less<>> FirstNames;
+  std::set<Reader> Readers;
+  std::map<uintptr_t, uint32_t> Objects; ///< those that compare, by address
+  std::vector<std::pair<std::string, uint32_t>> Compared; ///< keys, of objects
+  bool TellsObjects = false; ///< a read has read under different names
   std::atomic<bool> Any{false};
 };
 

@@ -4,6 +4,7 @@
 // line of its own, and passes the address of Key to log_one. While the policy
 // is `light`, the module's code calls log_one only if Left[outcome] is 0. If it
 // is positive, the code decrements it instead; if negative, it does nothing.
+// The words do not know objects: a comparison that calls log_one_of has none.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_SITEWORDS_H

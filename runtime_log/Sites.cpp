@@ -1,7 +1,11 @@
 //===- Sites.cpp ----------------------------------------------------------===//
 #include "Sites.h"
 
+#include "ReadNames.h"
+#include "Runtime.h"
+
 #include <new>
+#include <utility>
 
 namespace tpc {
 
@@ -21,20 +25,18 @@ bool Meter::takes(uint64_t Cap, int64_t Ns) {
   }
 }
 
-Site::Site(std::string Text, uint32_t Number)
-    : Number(Number), IsShort(Text.size() < sizeof(Head)),
-      Key(std::move(Text)) {
+Site::Site(std::string Text, size_t Length, uint32_t Number)
+    : Number(Number), IsShort(Length < sizeof(Head)), Key(std::move(Text)),
+      Length(Length) {
   if (!IsShort)
     std::memcpy(Head, Key.data(), sizeof(Head));
 }
 
-Site *Sites::ofText(const char *Key) {
-  if (auto Known = ByText.find(Key); Known != ByText.end())
-    return Known->second;
+Site *Sites::create(std::string Text, size_t Length) {
   uint32_t Count = Size.load(std::memory_order_relaxed);
   if (Count == Most)
     return nullptr;
-  auto *S = new Site(Key, Count + 1);
+  auto *S = new Site(std::move(Text), Length, Count + 1);
   std::atomic<Site **> &Block = Blocks[Count / BlockSize];
   if (!Block.load(std::memory_order_relaxed))
     Block.store(new Site *[BlockSize](), std::memory_order_release);
@@ -44,22 +46,70 @@ Site *Sites::ofText(const char *Key) {
   return S;
 }
 
-Site *Sites::make(const char *Key) {
-  std::lock_guard<std::mutex> Guard(Making);
-  Site *S = ofText(Key);
-  if (S)
-    bind(Key, *S);
+Site *Sites::ofText(const char *Key) {
+  if (auto Known = ByText.find(Key); Known != ByText.end())
+    return Known->second;
+  return create(Key, std::strlen(Key));
+}
+
+/// The site of \p Object under the key of \p First. If it shares one, \p Object
+/// becomes what stands for all of those.
+Site *Sites::ofObject(Site &First, const void *&Object) {
+  for (auto &[Known, S] : First.Instances)
+    if (Known == Object)
+      return S;
+  size_t Number = First.Instances.size() + 1;
+  if (Number > MostInstances) {
+    Object = &Others;
+    Number = 0;
+  }
+  std::string Text = First.Key + "#" + std::to_string(Number);
+  Site *S = Number == 1 ? &First : nullptr;
+  if (auto Known = ByText.find(Text); !S && Known != ByText.end())
+    S = Known->second;
+  if (!S)
+    S = create(std::move(Text), First.Length);
+  if (S && Number)
+    First.Instances.emplace_back(Object, S);
   return S;
 }
 
-void Sites::bind(const char *Key, Site &S) {
+Site *Sites::ofOthers(const char *Key) const { return at(Key, &Others); }
+
+Site *Sites::make(const char *Key, const void *Object) {
+  Site *S;
+  bool IsShared = false, Warns = false;
+  {
+    std::lock_guard<std::mutex> Guard(Making);
+    S = ofText(Key);
+    const void *Own = Object;
+    if (S && Object)
+      S = ofObject(*S, Own);
+    if (!S)
+      return nullptr;
+    IsShared = Own != Object;
+    Warns = IsShared && !std::exchange(HasTold, true);
+    bind(Key, Own, *S);
+  }
+  if (Warns)
+    warn("more than " + std::to_string(MostInstances) +
+         " objects evaluate comparison " + Key +
+         ": further ones share their reports, here and elsewhere");
+  if (Object && !IsShared)
+    ReadNames::all().addObject(S->Key, Object);
+  return S;
+}
+
+void Sites::bind(const char *Key, const void *Object, Site &S) {
   Table *T = Current.load(std::memory_order_relaxed);
-  auto Put = [](Table &In, const char *Address, Site *Found) {
-    for (uint64_t I = hash(Address);; ++I) {
+  auto Put = [](Table &In, const char *Address, const void *Of, Site *Found) {
+    for (uint64_t I = hash(Address, Of);; ++I) {
       Entry &E = In.Entries[I & In.Mask];
       const char *There = E.Key.load(std::memory_order_relaxed);
-      if (There && There != Address)
+      if (There && (There != Address || E.Object != Of))
         continue;
+      if (!There)
+        E.Object = Of;
       E.Found.store(Found, std::memory_order_release);
       E.Key.store(Address, std::memory_order_release);
       return There == nullptr;
@@ -71,12 +121,12 @@ void Sites::bind(const char *Key, Site &S) {
     uint64_t Entries = T ? (T->Mask + 1) * 2 : 1024;
     auto *Larger = new Table{Entries - 1, new Entry[Entries]};
     for (uint64_t I = 0; T && I <= T->Mask; ++I)
-      if (const char *Address = T->Entries[I].Key.load())
-        Put(*Larger, Address, T->Entries[I].Found.load());
+      if (const Entry &E = T->Entries[I]; const char *Address = E.Key.load())
+        Put(*Larger, Address, E.Object, E.Found.load());
     Current.store(Larger, std::memory_order_release);
     T = Larger;
   }
-  Bound += Put(*T, Key, &S);
+  Bound += Put(*T, Key, Object, &S);
 }
 
 void Sites::afterFork() {

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <vector>
 
 namespace tpc {
 
@@ -34,14 +35,16 @@ struct DropCount {
   std::atomic<uint64_t> Flops{0};
 };
 
-/// One key. Sites are never destroyed.
+/// One key, or what one object evaluates under it. Sites are never destroyed.
 struct Site {
-  Site(std::string Text, uint32_t Number);
+  /// \p Length is that of the key in \p Text, without the number of an
+  /// instance.
+  Site(std::string Text, size_t Length, uint32_t Number);
 
   /// Whether the key that was found at \p Address is still there.
   bool isAt(const char *Address) const {
     if (__builtin_expect(IsShort, 0))
-      return Key == Address;
+      return !std::strncmp(Key.data(), Address, Length) && !Address[Length];
     uint64_t There[2];
     std::memcpy(There, Address, sizeof(There));
     return There[0] == Head[0] && There[1] == Head[1];
@@ -54,7 +57,11 @@ struct Site {
   const bool IsShort;    ///< the key has fewer than 16 bytes
   /// The last outcome of the predicate: -1 before the first evaluation.
   std::atomic<int8_t> Last{-1};
-  const std::string Key;
+  const std::string Key; ///< as it is reported
+  const size_t Length;   ///< of the key in it
+  /// The objects that have evaluated the key, each with its site; the first one
+  /// has this one. The lock of Sites is held while they are used.
+  std::vector<std::pair<const void *, Site *>> Instances;
   std::mutex Lock; ///< held while Last changes
   Meter Used;
   DropCount OverSiteCap, OverProcessCap;
@@ -66,35 +73,27 @@ struct Site {
   std::atomic<LightSite *> Light{nullptr};
 };
 
-/// Finds sites by the address of the key, or by its text if the address is new.
-/// Finding takes no lock, creating does.
+/// Finds sites by the address of the key and of the object, or by the key's
+/// text if these are new. Finding takes no lock, creating does.
 class Sites {
 public:
   static constexpr uint32_t Most = 1U << 22;
+  /// So many objects have a site of their own for a key; the others share one.
+  static constexpr size_t MostInstances = 32;
 
-  /// The site of \p Key, created if it is new; null beyond Most sites.
-  Site *find(const char *Key) {
-    Site *S = known(Key);
-    return S ? S : make(Key);
+  /// The site of \p Key and \p Object, created if it is new; null beyond Most
+  /// sites.
+  Site *find(const char *Key, const void *Object = nullptr) {
+    Site *S = known(Key, Object);
+    return S ? S : make(Key, Object);
   }
 
-  /// The site of \p Key if it was found at this address before; otherwise null.
-  Site *known(const char *Key) const {
-    if (const Table *T = Current.load(std::memory_order_acquire))
-      for (uint64_t I = hash(Key);; ++I) {
-        const Entry &E = T->Entries[I & T->Mask];
-        const char *There = E.Key.load(std::memory_order_acquire);
-        if (There == Key) {
-          // After a library is unloaded, another may be loaded at its address.
-          Site *S = E.Found.load(std::memory_order_acquire);
-          if (__builtin_expect(S->isAt(Key), 1))
-            return S;
-          break;
-        }
-        if (!There)
-          break;
-      }
-    return nullptr;
+  /// The site of \p Key and \p Object if it was found before, with the key at
+  /// this address; otherwise null.
+  [[gnu::always_inline]] Site *known(const char *Key,
+                                     const void *Object = nullptr) const {
+    Site *S = at(Key, Object);
+    return S || !Object ? S : ofOthers(Key);
   }
 
   Site &operator[](uint32_t Number) const {
@@ -114,8 +113,11 @@ public:
 private:
   static constexpr uint32_t BlockSize = 1024;
 
-  struct Entry {
+  /// Its size makes it cheap to find, and keeps it in one cache line.
+  struct alignas(32) Entry {
+    /// Set last, and once.
     std::atomic<const char *> Key{nullptr};
+    const void *Object = nullptr;
     std::atomic<Site *> Found{nullptr};
   };
   struct Table {
@@ -123,16 +125,44 @@ private:
     Entry *Entries;
   };
 
-  static uint64_t hash(const char *Key) {
-    return (reinterpret_cast<uintptr_t>(Key) * 0x9E3779B97F4A7C15U) >> 32;
+  static uint64_t hash(const char *Key, const void *Object) {
+    // Shifted, because objects are as far from each other as keys.
+    auto Mixed = reinterpret_cast<uintptr_t>(Key) ^
+                 reinterpret_cast<uintptr_t>(Object) << 20;
+    return (Mixed * 0x9E3779B97F4A7C15U) >> 32;
   }
 
-  Site *make(const char *Key);
+  [[gnu::always_inline]] Site *at(const char *Key, const void *Object) const {
+    if (const Table *T = Current.load(std::memory_order_acquire))
+      for (uint64_t I = hash(Key, Object);; ++I) {
+        const Entry &E = T->Entries[I & T->Mask];
+        const char *There = E.Key.load(std::memory_order_acquire);
+        if (There == Key && E.Object == Object) {
+          // After a library is unloaded, another may be loaded at its address.
+          Site *S = E.Found.load(std::memory_order_acquire);
+          if (__builtin_expect(S->isAt(Key), 1))
+            return S;
+          break;
+        }
+        if (!There)
+          break;
+      }
+    return nullptr;
+  }
+
+  Site *ofOthers(const char *Key) const;
+  Site *make(const char *Key, const void *Object);
+  Site *create(std::string Text, size_t Length);
   Site *ofText(const char *Key);
-  void bind(const char *Key, Site &S);
+  Site *ofObject(Site &First, const void *&Object);
+  void bind(const char *Key, const void *Object, Site &S);
+
+  /// Its address stands for the objects that have no site of their own.
+  static constexpr char Others = 0;
 
   std::atomic<Table *> Current{nullptr};
-  uint64_t Bound = 0; ///< entries of the table in use
+  uint64_t Bound = 0;   ///< entries of the table in use
+  bool HasTold = false; ///< that objects share their reports
   std::mutex Making;
   std::unordered_map<std::string_view, Site *> ByText;
   std::atomic<Site **> Blocks[Most / BlockSize] = {};

@@ -23,6 +23,10 @@ STATISTIC(NumReports, "Reports inserted");
 /// `void log_one(char *key, bool result, double cmp, double thresh, bool res)`
 static constexpr StringLiteral LogName = "_Z7log_onePcbddb";
 
+/// The same with `const void *object` at the end. Weak: a program's own log_one
+/// gets all reports.
+static constexpr StringLiteral LogOfName = "_Z10log_one_ofPcbddbPKv";
+
 Instruction *insertionPointAfter(Instruction &I) {
   if (auto *Invoke = dyn_cast<InvokeInst>(&I)) {
     BasicBlock *Next = Invoke->getNormalDest();
@@ -122,7 +126,8 @@ std::optional<Report> planReport(const Comparison &C, bool IsUnsigned,
   if (!Predicate)
     return std::nullopt;
   // A program's own log_one would call itself without end.
-  if (Predicate->getFunction()->getName() == LogName)
+  StringRef In = Predicate->getFunction()->getName();
+  if (In == LogName || In == LogOfName)
     return std::nullopt;
   if (!C.Compare)
     return planFlag(C, IsUnsigned, Analysed, R) ? std::optional(R)
@@ -187,13 +192,16 @@ static Value *takesCase(IRBuilder<> &B, SwitchInst &Switch) {
   return Taken;
 }
 
-static FunctionCallee logFunction(Module &M) {
+static FunctionCallee logFunction(Module &M, bool HasObject) {
   LLVMContext &Ctx = M.getContext();
   Type *Bool = Type::getInt1Ty(Ctx), *Double = Type::getDoubleTy(Ctx);
-  auto *T = FunctionType::get(
-      Type::getVoidTy(Ctx),
-      {PointerType::getUnqual(Ctx), Bool, Double, Double, Bool}, false);
-  FunctionCallee Callee = M.getOrInsertFunction(LogName, T);
+  Type *Pointer = PointerType::getUnqual(Ctx);
+  SmallVector<Type *, 6> Types{Pointer, Bool, Double, Double, Bool};
+  if (HasObject)
+    Types.push_back(Pointer);
+  auto *T = FunctionType::get(Type::getVoidTy(Ctx), Types, false);
+  FunctionCallee Callee =
+      M.getOrInsertFunction(HasObject ? LogOfName : LogName, T);
   if (auto *F = dyn_cast<Function>(Callee.getCallee());
       F && F->isDeclaration()) {
     F->addParamAttr(1, Attribute::ZExt);
@@ -204,6 +212,12 @@ static FunctionCallee logFunction(Module &M) {
     F->setMemoryEffects(MemoryEffects::inaccessibleOrArgMemOnly());
     F->addParamAttr(0, Attribute::ReadOnly);
     F->addParamAttr(0, noCapture(Ctx));
+    if (HasObject) {
+      // Only its address counts.
+      F->addParamAttr(5, Attribute::ReadNone);
+      F->addParamAttr(5, noCapture(Ctx));
+      F->setLinkage(GlobalValue::ExternalWeakLinkage);
+    }
   }
   return Callee;
 }
@@ -227,11 +241,15 @@ static GlobalVariable *wantedFlag(Module &M) {
 }
 
 /// `if (tpc_reporting) log_one(...)` as a function that the optimiser inlines:
-/// a program whose reports are off pays for one branch.
-static Function *reportFunction(Module &M, FunctionCallee Log) {
+/// a program whose reports are off pays for one branch. If \p Log is
+/// log_one_of, and is not there, \p Plain gets the report.
+static Function *reportFunction(Module &M, FunctionCallee Log,
+                                FunctionCallee Plain) {
   LLVMContext &Ctx = M.getContext();
-  auto *F = Function::Create(Log.getFunctionType(),
-                             GlobalValue::InternalLinkage, "tpc.report", M);
+  bool HasObject = Log.getCallee() != Plain.getCallee();
+  auto *F =
+      Function::Create(Log.getFunctionType(), GlobalValue::InternalLinkage,
+                       HasObject ? "tpc.report.of" : "tpc.report", M);
   F->addFnAttr(Attribute::AlwaysInline);
   F->setDoesNotThrow();
   GlobalVariable *Wanted = wantedFlag(M);
@@ -249,14 +267,28 @@ static Function *reportFunction(Module &M, FunctionCallee Log) {
   LoadInst *Now = B.CreateAlignedLoad(B.getInt8Ty(), Wanted, Align(1));
   Now->setAtomic(AtomicOrdering::Monotonic);
   B.CreateCondBr(B.CreateIsNull(Now), Done, Report);
-  B.SetInsertPoint(Report);
-  SmallVector<Value *, 5> Arguments;
+  SmallVector<Value *, 6> Arguments;
   for (Argument &A : F->args())
     Arguments.push_back(&A);
-  CallInst *Call = B.CreateCall(Log, Arguments);
-  Call->addParamAttr(1, Attribute::ZExt);
-  Call->addParamAttr(4, Attribute::ZExt);
-  B.CreateBr(Done);
+  auto CallAt = [&](BasicBlock *At, FunctionCallee To) {
+    B.SetInsertPoint(At);
+    CallInst *Call = B.CreateCall(
+        To,
+        ArrayRef(Arguments).take_front(To.getFunctionType()->getNumParams()));
+    Call->addParamAttr(1, Attribute::ZExt);
+    Call->addParamAttr(4, Attribute::ZExt);
+    B.CreateBr(Done);
+  };
+  if (!HasObject) {
+    CallAt(Report, Log);
+  } else {
+    auto *Of = BasicBlock::Create(Ctx, "", F, Done);
+    auto *One = BasicBlock::Create(Ctx, "", F, Done);
+    B.SetInsertPoint(Report);
+    B.CreateCondBr(B.CreateIsNull(Log.getCallee()), One, Of);
+    CallAt(Of, Log);
+    CallAt(One, Plain);
+  }
   B.SetInsertPoint(Done);
   B.CreateRetVoid();
   return F;
@@ -265,10 +297,14 @@ static Function *reportFunction(Module &M, FunctionCallee Log) {
 std::string insertReports(Module &M, ArrayRef<Report> Reports) {
   if (Reports.empty())
     return "";
-  bool WasThere = M.getFunction(LogName);
+  const StringLiteral Added[] = {LogName, LogOfName};
+  const bool WasThere[] = {M.getFunction(LogName) != nullptr,
+                           M.getFunction(LogOfName) != nullptr};
   bool WasWanted = M.getNamedGlobal("tpc_reporting");
-  FunctionCallee Log = logFunction(M);
-  Function *ReportTo = reportFunction(M, Log);
+  FunctionCallee Log = logFunction(M, /*HasObject=*/false);
+  Function *ReportTo = reportFunction(M, Log, Log), *ReportOf = nullptr;
+  if (any_of(Reports, [](const Report &R) { return R.Object; }))
+    ReportOf = reportFunction(M, logFunction(M, /*HasObject=*/true), Log);
   SmallVector<Instruction *, 0> Inserted;
   StringMap<GlobalVariable *> Keys;
   Instruction *Above = nullptr, *Before = nullptr;
@@ -304,8 +340,12 @@ std::string insertReports(Module &M, ArrayRef<Report> Reports) {
     B.SetCurrentDebugLocation(R.Before->getDebugLoc());
     Value *Result = R.Switch ? takesCase(B, *R.Switch) : toBool(B, R.Result);
     Value *Outcome = R.Outcome == R.Result ? Result : toBool(B, R.Outcome);
-    B.CreateCall(ReportTo, {Key, Result, toDouble(B, Compared, R.Signed),
-                            toDouble(B, Threshold, R.Signed), Outcome});
+    SmallVector<Value *, 6> Arguments{
+        Key, Result, toDouble(B, Compared, R.Signed),
+        toDouble(B, Threshold, R.Signed), Outcome};
+    if (R.Object)
+      Arguments.push_back(R.Object);
+    B.CreateCall(R.Object ? ReportOf : ReportTo, Arguments);
     Collect();
   };
   std::string Why;
@@ -328,11 +368,14 @@ std::string insertReports(Module &M, ArrayRef<Report> Reports) {
   for (auto &[Text, Key] : Keys)
     Key->eraseFromParent();
   ReportTo->eraseFromParent();
+  if (ReportOf)
+    ReportOf->eraseFromParent();
   if (GlobalVariable *Wanted = M.getNamedGlobal("tpc_reporting");
       Wanted && !WasWanted)
     Wanted->eraseFromParent();
-  if (auto *F = dyn_cast<Function>(Log.getCallee()); F && !WasThere)
-    F->eraseFromParent();
+  for (auto [Name, Was] : zip_equal(Added, WasThere))
+    if (Function *F = M.getFunction(Name); F && !Was)
+      F->eraseFromParent();
   return Why;
 }
 

@@ -1,8 +1,9 @@
 //===- InstrumentBranches.h - Inserts the reports -------------------------===//
 //
 // Thesis A.13: inserts a call of log_one before each predicate of a threshold
-// predicate comparison, with the key, the outcomes and both values. No other
-// code of TPC changes what a program does.
+// predicate comparison, with the key, the outcomes and both values, and
+// log_one_of where the object is an instance. No other code of TPC changes what
+// a program does.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_INSTRUMENTBRANCHES_H
@@ -30,7 +31,9 @@ struct Report {
   /// If those two are objects that hold a number: the call that compares them.
   llvm::CallBase *Held = nullptr;
   llvm::Value *Outcome; ///< the outcome of the comparison
-  bool Signed = true;   ///< whether integers are signed
+  /// The object whose evaluations are reported apart (Instances.h), if any.
+  llvm::Value *Object = nullptr;
+  bool Signed = true; ///< whether integers are signed
 };
 
 /// The instruction before which what follows \p I is inserted; null if no place

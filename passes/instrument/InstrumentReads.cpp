@@ -1,6 +1,8 @@
 //===- InstrumentReads.cpp ------------------------------------------------===//
 #include "instrument/InstrumentReads.h"
 
+#include "instrument/Instances.h"
+
 #include "llvm/BinaryFormat/Dwarf.h"
 #include "llvm/IR/DebugInfoMetadata.h"
 #include "llvm/IR/IRBuilder.h"
@@ -12,6 +14,9 @@ namespace tpc {
 
 /// `void log_read(char *key, const void *handle, const void *name, bool text)`
 static constexpr StringLiteral LogName = "_Z8log_readPcPKvS1_b";
+
+/// The same with `const void *object, unsigned long size` at the end.
+static constexpr StringLiteral LogOfName = "_Z11log_read_ofPcPKvS1_bS1_m";
 
 /// The offset in bytes of the field \p Name in the class that \p Method is a
 /// method of; none if the debug information does not have it.
@@ -43,6 +48,10 @@ std::optional<NamedRead> planName(const ParameterRead &Read,
   NamedRead R{
       Read.Key,  Call, objectOf(*Call, Row), 0, argument(*Call, Row, Row.Name),
       Read.Field};
+  if (Argument *Object = objectOf(*Call->getFunction())) {
+    R.Object = Object;
+    R.ObjectSize = classOf(*Call->getFunction())->getSizeInBits() / CHAR_BIT;
+  }
   if (Row.Kind == Rule::Config) {
     std::optional<uint64_t> Offset = offsetOf(*Callee, Row.Resolve);
     if (!R.Handle || !Offset || R.Text.empty())
@@ -60,13 +69,15 @@ std::optional<NamedRead> planName(const ParameterRead &Read,
 }
 
 /// Weak, so that a program also runs without the log library.
-static FunctionCallee logFunction(Module &M) {
+static FunctionCallee logFunction(Module &M, bool HasObject) {
   LLVMContext &Ctx = M.getContext();
   Type *Pointer = PointerType::getUnqual(Ctx);
-  auto *T = FunctionType::get(Type::getVoidTy(Ctx),
-                              {Pointer, Pointer, Pointer, Type::getInt1Ty(Ctx)},
-                              false);
-  FunctionCallee Callee = M.getOrInsertFunction(LogName, T);
+  SmallVector<Type *, 6> Types{Pointer, Pointer, Pointer, Type::getInt1Ty(Ctx)};
+  if (HasObject)
+    Types.append({Pointer, M.getDataLayout().getIntPtrType(Ctx)});
+  auto *T = FunctionType::get(Type::getVoidTy(Ctx), Types, false);
+  FunctionCallee Callee =
+      M.getOrInsertFunction(HasObject ? LogOfName : LogName, T);
   if (auto *F = dyn_cast<Function>(Callee.getCallee());
       F && F->isDeclaration()) {
     F->setLinkage(GlobalValue::ExternalWeakLinkage);
@@ -76,23 +87,32 @@ static FunctionCallee logFunction(Module &M) {
   return Callee;
 }
 
-/// `if (log_read) log_read(...)`
-static Function *reportFunction(Module &M, FunctionCallee Log) {
+/// `if (log_read) log_read(...)`; with \p Else, `if (log_read_of)
+/// log_read_of(...) else ...`.
+static Function *reportFunction(Module &M, FunctionCallee Log,
+                                Function *Else = nullptr) {
   LLVMContext &Ctx = M.getContext();
-  auto *F = Function::Create(Log.getFunctionType(),
-                             GlobalValue::InternalLinkage, "tpc.read", M);
+  auto *F =
+      Function::Create(Log.getFunctionType(), GlobalValue::InternalLinkage,
+                       Else ? "tpc.read.of" : "tpc.read", M);
   F->setDoesNotThrow();
   auto *Look = BasicBlock::Create(Ctx, "", F);
   auto *Report = BasicBlock::Create(Ctx, "", F);
   auto *Done = BasicBlock::Create(Ctx, "", F);
   IRBuilder<> B(Look);
-  B.CreateCondBr(B.CreateIsNull(Log.getCallee()), Done, Report);
+  BasicBlock *Without = Else ? BasicBlock::Create(Ctx, "", F, Done) : Done;
+  B.CreateCondBr(B.CreateIsNull(Log.getCallee()), Without, Report);
   B.SetInsertPoint(Report);
-  SmallVector<Value *, 4> Arguments;
+  SmallVector<Value *, 6> Arguments;
   for (Argument &A : F->args())
     Arguments.push_back(&A);
   B.CreateCall(Log, Arguments)->addParamAttr(3, Attribute::ZExt);
   B.CreateBr(Done);
+  if (Else) {
+    B.SetInsertPoint(Without);
+    B.CreateCall(Else, ArrayRef(Arguments).take_front(Else->arg_size()));
+    B.CreateBr(Done);
+  }
   B.SetInsertPoint(Done);
   B.CreateRetVoid();
   return F;
@@ -111,7 +131,10 @@ SmallVector<Instruction *, 0> insertNames(Module &M,
   SmallVector<Instruction *, 0> Inserted;
   if (Reads.empty())
     return Inserted;
-  Function *Report = reportFunction(M, logFunction(M));
+  Function *Report = reportFunction(M, logFunction(M, /*HasObject=*/false));
+  Function *ReportOf = nullptr;
+  if (any_of(Reads, [](const NamedRead &R) { return R.Object; }))
+    ReportOf = reportFunction(M, logFunction(M, /*HasObject=*/true), Report);
   for (const NamedRead &R : Reads) {
     IRBuilder<> B(R.Before);
     B.SetCurrentDebugLocation(R.Before->getDebugLoc());
@@ -122,9 +145,11 @@ SmallVector<Instruction *, 0> insertNames(Module &M,
         Inserted.push_back(I);
     }
     Value *Name = R.Name ? R.Name : textOf(M, R.Text, "tpc.name");
-    Inserted.push_back(
-        B.CreateCall(Report, {textOf(M, R.Key, "tpc.key"), Handle, Name,
-                              B.getInt1(!R.Name)}));
+    SmallVector<Value *, 6> Arguments{textOf(M, R.Key, "tpc.key"), Handle, Name,
+                                      B.getInt1(!R.Name)};
+    if (R.Object)
+      Arguments.append({R.Object, B.getInt64(R.ObjectSize)});
+    Inserted.push_back(B.CreateCall(R.Object ? ReportOf : Report, Arguments));
   }
   return Inserted;
 }

@@ -7,7 +7,9 @@
 //
 // with the key of the read, the ros::NodeHandle (null for ros::param), and the
 // name: a std::string, or with `text` a C string. The log library resolves the
-// name as roscpp does.
+// name as roscpp does. In a method it calls log_read_of instead, if the library
+// has it, with the object and its size as well: two objects may read different
+// parameters there.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_INSTRUMENTREADS_H
@@ -30,6 +32,8 @@ struct NamedRead {
   uint64_t HandleOffset = 0;
   llvm::Value *Name; ///< null: the name is Text
   std::string Text;
+  llvm::Value *Object = nullptr; ///< which the call is in a method of
+  uint64_t ObjectSize = 0;       ///< in bytes
 };
 
 /// The report of the name of \p Read; none if roscpp does not resolve it, or if

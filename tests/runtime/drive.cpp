@@ -351,6 +351,39 @@ int odd(const Arguments &) {
   return 0;
 }
 
+/// objects OBJECTS TURNS: objects that evaluate one key in turns, all but the
+/// second with the same outcome each time; the second changes it in each 10th
+/// turn. Afterwards code without an object reports the key once more.
+int objects(const Arguments &A) {
+  std::vector<uint64_t> Objects(std::stoul(A[0]));
+  uint64_t Turns = std::stoull(A[1]);
+  Keys K(1);
+  for (uint64_t Turn = 0; Turn < Turns; ++Turn)
+    for (size_t I = 0; I < Objects.size(); ++I) {
+      bool Result = I == 1 ? Turn / 10 % 2 : I % 2;
+      log_one_of(K[0], Result, static_cast<double>(I), 0.5, Result,
+                 &Objects[I]);
+    }
+  log_one(K[0], false, -1, 0.5, false);
+  return 0;
+}
+
+/// objects-threads TURNS: two threads, each with an object of its own.
+int objectsOfThreads(const Arguments &A) {
+  uint64_t Turns = std::stoull(A[0]);
+  uint64_t Objects[2];
+  Keys K(1);
+  std::vector<std::thread> All;
+  for (size_t I = 0; I < 2; ++I)
+    All.emplace_back([&, I] {
+      for (uint64_t Turn = 0; Turn < Turns; ++Turn)
+        log_one_of(K[0], I, static_cast<double>(I), 0.5, I, &Objects[I]);
+    });
+  for (std::thread &T : All)
+    T.join();
+  return 0;
+}
+
 /// names: keys that are none, as a hand-written call may have.
 int names(const Arguments &) {
   std::string Long(10000, 'k');
@@ -374,7 +407,8 @@ int main(int Count, char **Words) {
       {"forked", forked},      {"ends", ends},
       {"signals", signals},    {"paced", paced},
       {"edges", edges},        {"odd", odd},
-      {"hot", hot},
+      {"hot", hot},            {"objects", objects},
+      {"objects-threads", objectsOfThreads},
       {"names", names},        {"closed", closed},
       {"cancelled", cancelled},
       {"exits", exits},        {"together", together}};
