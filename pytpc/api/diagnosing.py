@@ -9,6 +9,7 @@ from typing import TypedDict, Unpack
 
 from pytpc.api.missions import (
     Source,
+    about_mission,
     find_declared,
     load_static,
     question_of,
@@ -69,10 +70,12 @@ def diagnose(
     asked = question_of(question, settings, DiagnoseSettings.__annotations__)
     recording = read_marked(mission)
     source = None if isinstance(mission, Recording) else Path(mission)
-    static = with_names_of(recording, load_static(static_info), source)
+    given = load_static(static_info)
+    static = with_names_of(recording, given, source)
     if question is None:
         good = None if asked.reference is None else read(asked.reference)
         asked = replace(asked, reference=good, declared=find_declared(static, source))
+    asked = about_mission(asked, given, static)
     found = blame(recording, static, asked)
     return Diagnosed(found, tuple(advise_blamed(found, recording, static, asked)))
 
@@ -128,6 +131,7 @@ class Rankings(TableSequence[MarkRanking]):
     ) -> Rankings:
         """Rank the parameters at each mark of a recording that was read before."""
         named = with_names_of(recording, static_info, source)
+        question = about_mission(question, static_info, named)
         found = rank_marks(recording, named, question)
         return cls(tuple(found), recording, named, source, question)
 

@@ -25,7 +25,7 @@ from pytpc.diagnosis.scores.live_scores import LiveRanking
 from pytpc.present.marking_terminal import MarkedMission
 from pytpc.present.watch_screen import LAYOUTS, Panel, Status, WatchOptions, watch_screen
 from pytpc.recording.marking_session import MarkChange, Session, View
-from pytpc.recording.mission import Recording
+from pytpc.recording.mission import ReadName, Recording
 from pytpc.recording.summaries import Summary
 from pytpc.ros.ros1.master import Master, own_host
 from pytpc.ros.ros1.relay import ROSOUT, TOPIC
@@ -96,7 +96,7 @@ class GraphFeed:
             if isinstance(item, Seen) and item.time_ns == 0:
                 # A node that has not heard of /clock yet.
                 item = item._replace(time_ns=now_ns)
-            if _time_of(item) <= now_ns + _BACK_NS:
+            if isinstance(item, ReadName) or _time_of(item) <= now_ns + _BACK_NS:
                 found.append(item)
             else:
                 self._other_clock += 1
@@ -166,6 +166,9 @@ class RecordedFeed:
         """The clock is at the beginning; a copy is kept every half minute, to go back to."""
         self._recording = recording
         self._ends = np.argsort(recording.summaries.end_ns, kind="stable")
+        fresh = fresh.snapshot()
+        for name in recording.names:
+            fresh.take_name(name)
         self._watching = fresh.snapshot()
         self._place = 0, 0
         self._at_ns = recording.start_ns - 1
@@ -275,6 +278,8 @@ class WatchedMission:
         for item in items:
             if isinstance(item, Seen):
                 self.watching.take(item)
+            elif isinstance(item, ReadName):
+                self.watching.take_name(item)
             else:
                 self.watching.take_summary(item)
 
@@ -327,7 +332,7 @@ class WatchedMission:
         return watch_screen(session, view, self.panel(now_ns, utf8=utf8), width, height)
 
 
-def _time_of(item: Item) -> int:
+def _time_of(item: Seen | Summary) -> int:
     return item.time_ns if isinstance(item, Seen) else item.end_ns
 
 

@@ -14,7 +14,9 @@ from pytpc.ingest.losses import LossCounter
 from pytpc.ingest.ros1 import decode_log, decode_string
 from pytpc.ingest.rosout_line import (
     BATCH_PREFIX,
+    Drop,
     Malformed,
+    Named,
     parse_other,
     parse_report,
     parse_stamped,
@@ -27,11 +29,12 @@ from pytpc.ingest.short_summary import (
     parse_short,
     parse_span,
 )
+from pytpc.recording.mission import ReadName
 from pytpc.recording.summaries import Summary
 from pytpc.ros.ros1.relay import ROSOUT, lines_of
 from pytpc.ros.ros1.subscriber import Source
 
-Item = Seen | Summary
+Item = Seen | Summary | ReadName
 
 _BEGIN = b"threshold_"
 _HOLD_S = 0.5
@@ -112,8 +115,8 @@ class Reports:
         if report is not None:
             key, result, cmp, thresh, res = report
             return [Seen(log.stamp_ns, key, node, result, cmp, thresh, res)]
-        other = parse_other(text, node)
-        return [other] if isinstance(other, Summary) else []
+        item = _item(parse_other(text, node), node)
+        return [] if item is None else [item]
 
     def _text(self, source: Source, data: bytes, steady_s: float) -> list[Item]:
         raw = decode_string(data)
@@ -139,17 +142,24 @@ class Reports:
                 item = self._line(line, node)
             if isinstance(item, ShortSummary):
                 found.append(item.summary)
-            elif isinstance(item, Seen | Summary):
+            elif isinstance(item, Seen | Summary | ReadName):
                 found.append(item)
         return found
 
     def _line(self, line: str, node: str) -> Item | None:
         other = parse_other(line, node, stamped=True)
         if other is not None:
-            return other if isinstance(other, Summary) else None
+            return _item(other, node)
         found = parse_stamped(line)
         if isinstance(found, Malformed):
             self.malformed += 1
             return None
         time_ns, (key, result, cmp, thresh, res) = found
         return Seen(time_ns, key, node, result, cmp, thresh, res)
+
+
+def _item(other: Summary | Drop | Named | Malformed | None, node: str) -> Item | None:
+    """What the ranking takes of a line that is no report."""
+    if isinstance(other, Named):
+        return ReadName(other.key, node, other.name, other.object)
+    return other if isinstance(other, Summary) else None

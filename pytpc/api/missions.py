@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from pytpc.base.errors import InputError
-from pytpc.diagnosis.full_names import with_full_names
+from pytpc.diagnosis.full_names import with_full_names, with_keys_of
 from pytpc.diagnosis.question import Question
 from pytpc.ingest.duplicates import TOLERANCE_NS
 from pytpc.ingest.reading import opened
@@ -86,6 +86,19 @@ def with_names_of(recording: Recording, static_info: StaticInfo, source: Path | 
     return with_full_names(
         static_info, recording, {name: origin.value for name, origin in origins.items()}
     )
+
+
+def about_mission(question: Question, static_info: StaticInfo, named: StaticInfo) -> Question:
+    """The question whose good run has the keys of a mission (`with_keys_of`).
+
+    Args:
+        question: of any mission.
+        static_info: of the build.
+        named: the same with the names of this mission, from ``with_names_of``.
+    """
+    if question.reference is None:
+        return question
+    return replace(question, reference=with_keys_of(question.reference, static_info, named))
 
 
 def check_reports(recording: Recording, static_info: StaticInfo, source: Path) -> None:

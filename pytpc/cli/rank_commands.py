@@ -10,7 +10,7 @@ from typing import Literal
 import click
 
 from pytpc.api.diagnosing import Rankings, changes_since, diagnose, is_compared
-from pytpc.api.missions import find_declared, with_names_of
+from pytpc.api.missions import about_mission, find_declared, with_names_of
 from pytpc.api.suggesting import smallest_changes
 from pytpc.base.errors import InputError
 from pytpc.base.wording import plain
@@ -157,7 +157,8 @@ def rank_command(given: _RankArguments) -> None:
             continue
         declared = [*(question.declared or ()), *read_declared([source], warn_plainly)]
         named = with_names_of(recording, static, source)
-        answer = _answer(recording, named, source, replace(question, declared=declared), given)
+        asked = about_mission(replace(question, declared=declared), static, named)
+        answer = _answer(recording, named, source, asked, given)
         if given.as_json:
             items += answer.as_json()
             continue

@@ -4,6 +4,9 @@ A node reports the full name of each parameter that it reads (`Recording.names`)
 before, and nodes that report none, leave the values on the parameter server: the parameter is the
 one whose name fits, whose value was compared, and whose namespace is named after the class that
 reads it, if these leave only one.
+
+Where several objects of a class evaluate a comparison, each has a key of its own (`KEY#2`) and so a
+comparison of its own here, with the name that it has read.
 """
 
 from __future__ import annotations
@@ -12,13 +15,21 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import count
 
 import numpy as np
 
 from pytpc.diagnosis.thresholds.units import threshold_of
 from pytpc.recording.mission import Recording
 from pytpc.static.link_unit import Comparison, LinkUnit
-from pytpc.static.parameters import DYNAMIC, resolved, same_parameter
+from pytpc.static.parameters import (
+    DYNAMIC,
+    INSTANCE,
+    base_key,
+    of_instance,
+    resolved,
+    same_parameter,
+)
 from pytpc.static.static_info import StaticInfo
 
 _CLOSE = 1e-9
@@ -30,8 +41,9 @@ def with_full_names(
     """The static information with the full names of this mission as sources.
 
     A name that the node's own name completes stays (``~limit``). So does one that several objects
-    read under different names. A comparison with a parameter that is not set is left out if the
-    same comparison is also known under one that is: an older name of it.
+    read under different names, if it is not known which of them evaluated the comparison. A
+    comparison with a parameter that is not set is left out if the same comparison is also known
+    under one that is: an older name of it.
 
     Args:
         static_info: of the build.
@@ -56,8 +68,55 @@ class _Names:
         """The nodes and full names that were reported for each read."""
         found = defaultdict(set)
         for one in self.recording.names:
-            found[one.key].add((one.node, one.name))
+            if not one.object:
+                found[one.key].add((one.node, one.name))
         return {key: frozenset(names) for key, names in found.items()}
+
+    @cached_property
+    def objects(self) -> Mapping[str, frozenset[tuple[str, int]]]:
+        """The objects that evaluate each comparison, by node and number, where nodes said it."""
+        found = defaultdict(set)
+        for one in self.recording.names:
+            if not one.name:
+                found[one.key].add((one.node, one.object))
+        return {key: frozenset(objects) for key, objects in found.items()}
+
+    @cached_property
+    def read_in(self) -> Mapping[str, frozenset[tuple[str, int, str]]]:
+        """The nodes, objects and full names of each read that was made in an object."""
+        found = defaultdict(set)
+        for one in self.recording.names:
+            if one.name and one.object:
+                found[one.key].add((one.node, one.object, one.name))
+        return {key: frozenset(names) for key, names in found.items()}
+
+    @cached_property
+    def instances(self) -> Mapping[str, tuple[str, ...]]:
+        """The keys of the instances of each comparison, but for the first one's."""
+        found = defaultdict(set)
+        for table in (self.recording.events, self.recording.summaries):
+            for key in table.keys:
+                if INSTANCE in key:
+                    found[base_key(key)].add(key)
+        return {key: tuple(sorted(keys, key=_number)) for key, keys in found.items()}
+
+    def said_of(self, key: str, reads: Iterable[str | None]) -> frozenset[tuple[str, str]]:
+        """The nodes and full names that were reported for these reads, in the objects of ``key``.
+
+        Those of all objects if it is not known which are those of ``key``.
+        """
+        known = [read for read in reads if read is not None]
+        said = frozenset[tuple[str, str]]().union(*(self.reported.get(r, ()) for r in known))
+        if len({name for _, name in said}) < 2:
+            return said
+        objects = self.objects.get(key, frozenset())
+        own = {
+            (node, name)
+            for read in known
+            for node, number, name in self.read_in.get(read, ())
+            if (node, number) in objects
+        }
+        return frozenset(own) or said
 
     @cached_property
     def nodes_of(self) -> Mapping[str, frozenset[str]]:
@@ -89,7 +148,7 @@ class _Names:
             for read in unit.parameters
             if read.name == source and (read.file, read.lineno) in reads and read.key is not None
         }
-        said = frozenset[tuple[str, str]]().union(*(self.reported.get(key, ()) for key in keys))
+        said = self.said_of(comparison.key, keys)
         if said:
             if DYNAMIC not in source and all(name == resolved(source, node) for node, name in said):
                 return None
@@ -123,6 +182,10 @@ class _Names:
         return any(same_parameter(name, source) for name in self.values)
 
 
+def _number(key: str) -> int:
+    return int(key.partition(INSTANCE)[2])
+
+
 def _gives(comparison: Comparison, value: object, thresholds: Iterable[float]) -> bool:
     """Whether the value of a parameter is one of these thresholds."""
     if not isinstance(value, bool | int | float):
@@ -133,20 +196,75 @@ def _gives(comparison: Comparison, value: object, thresholds: Iterable[float]) -
 
 def _renamed(unit: LinkUnit, names: _Names) -> LinkUnit:
     comparisons: list[Comparison] = []
-    reads: dict[tuple[str, int, str | None], str] = {}
+    reads = defaultdict(set)
+    known = {one.key for one in unit.comparisons}
     for one in unit.comparisons:
-        name = names.of(one, unit)
-        comparisons.append(one if name is None else replace(one, source=name))
-        if name is not None:
-            reads |= {(place.file, place.lineno, one.source): name for place in one.param_reads}
+        new = (key for key in names.instances.get(one.key, ()) if key not in known)
+        for key in (one.key, *new):
+            instance = one if key == one.key else replace(one, key=key)
+            name = names.of(instance, unit)
+            if name is not None:
+                for place in one.param_reads:
+                    reads[place.file, place.lineno, one.source].add(name)
+            elif one.source is not None:
+                name = of_instance(one.source, key)
+            comparisons.append(instance if name == one.source else replace(instance, source=name))
     kept = _without_aliases(comparisons, names)
-    if not reads and len(kept) == len(unit.comparisons):
+    if not reads and kept == list(unit.comparisons):
         return unit
     parameters = tuple(
-        replace(read, name=reads.get((read.file, read.lineno, read.name), read.name))
+        replace(read, name=name)
         for read in unit.parameters
+        for name in sorted(reads.get((read.file, read.lineno, read.name), {read.name}))
     )
     return replace(unit, comparisons=tuple(kept), parameters=parameters)
+
+
+def with_keys_of(reference: Recording, static_info: StaticInfo, named: StaticInfo) -> Recording:
+    """A good run whose objects have the keys that they have in a mission.
+
+    The objects of a class have their numbers by the order in which they compare, which may differ
+    in the two runs. What tells them apart is the parameter that each has read.
+
+    Args:
+        reference: the good run.
+        static_info: of the build.
+        named: the same with the names of the mission, from ``with_full_names``.
+    """
+    there = with_full_names(static_info, reference, {})
+    bases = {base_key(key) for key in (*named.comparisons, *there.comparisons) if INSTANCE in key}
+    keys: dict[str, str] = {}
+    for base in sorted(bases):
+        here, own = (_sources(static, base) for static in (named, there))
+        free = [key for key in here if own.get(key) != here[key]]
+        moved = [key for key in own if own[key] != here.get(key)]
+        for key in moved:
+            alike = [other for other in free if here[other] == own[key] and DYNAMIC not in own[key]]
+            if len(alike) == 1:
+                free.remove(alike[0])
+                keys[key] = alike[0]
+        # What the mission does not have gives way.
+        taken = {*keys.values(), *(key for key in own if key not in moved)}
+        numbers = (f"{base}{INSTANCE}{n}" for n in count(2))
+        spare = (key for key in numbers if key not in here and key not in own)
+        keys |= {key: next(spare) for key in moved if key not in keys and key in taken}
+    if not keys:
+        return reference
+    events, summaries = reference.events, reference.summaries
+    return replace(
+        reference,
+        events=replace(events, keys=tuple(keys.get(key, key) for key in events.keys)),
+        summaries=replace(summaries, keys=tuple(keys.get(key, key) for key in summaries.keys)),
+    )
+
+
+def _sources(static_info: StaticInfo, base: str) -> dict[str, str]:
+    """The parameters of a comparison's instances, by key."""
+    return {
+        key: one.source
+        for key, one in static_info.comparisons.items()
+        if base_key(key) == base and one.source is not None
+    }
 
 
 def _without_aliases(comparisons: list[Comparison], names: _Names) -> list[Comparison]:
@@ -156,7 +274,8 @@ def _without_aliases(comparisons: list[Comparison], names: _Names) -> list[Compa
     together = defaultdict(list)
     for one in comparisons:
         if one.type != "constant":
-            together[one.file, one.lineno, one.column, one.function, one.relation].append(one)
+            place = one.file, one.lineno, one.column, one.function, one.relation
+            together[place, one.key.partition(INSTANCE)[2]].append(one)
     left_out = set()
     for alike in together.values():
         unset = [one.key for one in alike if not names.is_set(one)]

@@ -333,7 +333,7 @@ class _TpcReader:
     def _complaints(self) -> None:
         gathering, header, name = self._gathering, self.header, self._path.name
         for named in self._system.names:
-            gathering.add_name(ReadName(named.key, self._node, named.name))
+            gathering.add_name(ReadName(named.key, self._node, named.name, named.object))
         stopped = 0
         for dropped in self._system.dropped(self._node):
             gathering.add_dropped(dropped)

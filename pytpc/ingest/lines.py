@@ -95,7 +95,7 @@ class Lines:
         elif isinstance(found, Drop):
             self._batches.drop(node, found)
         elif isinstance(found, Named):
-            self.gathering.add_name(ReadName(found.key, node, found.name))
+            self.gathering.add_name(ReadName(found.key, node, found.name, found.object))
         else:
             what = "time is missing" if found is None else f"{found.what}, column {found.column}"
             self._skip(what, time_ns, text, number)

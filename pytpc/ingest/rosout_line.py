@@ -26,7 +26,9 @@ BATCH_PREFIX = "threshold_batch:"
 LATEST_NS = 2**63 - 1
 
 TIME = r"[0-9]{1,10}\.[0-9]{1,9}"
-KEY = r"[0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12}"
+_UUID = r"[0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12}"
+# With the number of an instance behind it.
+KEY = rf"{_UUID}(?:#[0-9]{{1,9}})?"
 _BOOL = r"0|1|True|False"
 DOUBLE = r"[-+]?(?:[0-9]+(?:\.[0-9]*)?(?:[eE][-+]?[0-9]+)?|\.[0-9]+(?:[eE][-+]?[0-9]+)?|inf|nan)"
 _END = r"[ \t\r\n]*"
@@ -45,7 +47,9 @@ _DROPPED = re.compile(
 _BATCH = re.compile(
     rf"#seq:({_COUNT}),count:({_COUNT}),dropped:({_COUNT}),pid:({_COUNT}),steady:({TIME}){_END}"
 )
-_NAME = re.compile(rf"({KEY}),(/[A-Za-z0-9_/~.]{{1,1000}}){_END}")
+_NAME = re.compile(
+    rf"({KEY})(?:,(?P<name>/[A-Za-z0-9_/~.]{{1,1000}}))?(?:,of:(?P<object>[1-9][0-9]{{0,8}}))?{_END}"
+)
 _STAMPED = re.compile(rf"({TIME}),")
 BOOLS = {"0": False, "1": True, "False": False, "True": True}
 
@@ -73,10 +77,15 @@ class Drop:
 
 @dataclass(frozen=True, slots=True)
 class Named:
-    """The full name of the parameter that the read with this key has read."""
+    """The full name of the parameter that the read with this key has read.
+
+    ``object`` is the number of the object in which it was read, 0 if the line does not say. Without
+    a name it is the object that evaluates the comparison with this key.
+    """
 
     key: str
     name: str
+    object: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,11 +177,11 @@ def _parse_drop(text: str, place: int) -> Drop | Malformed:
 
 
 def parse_name(text: str, place: int = 0) -> Named | Malformed:
-    """Read ``KEY,/full/name`` from this place on."""
+    """Read ``KEY,/full/name[,of:OBJECT]`` or ``KEY,of:OBJECT`` from this place on."""
     found = _NAME.fullmatch(text, place)
-    if found is None:
+    if found is None or not (found["name"] or found["object"]):
         return Malformed("KEY,/full/name is expected", place + 1)
-    return Named(found[1].lower(), found[2])
+    return Named(found[1].lower(), found["name"] or "", int(found["object"] or 0))
 
 
 def parse_batch(text: str) -> BatchHead | Malformed:

@@ -194,7 +194,7 @@ class _Csv(_Taker):
             self.lines.add(line, 0, self._code, number)
 
     def take_many(self, number: int, lines: list[bytes]) -> None:
-        if number == 1 or any(b"#" in line or b"threshold_" in line for line in lines):
+        if number == 1 or any(line.startswith(b"#") or b"threshold_" in line for line in lines):
             super().take_many(number, lines)
             return
         numbers = [at for at, line in enumerate(lines, start=number) if line.strip()]

@@ -10,6 +10,7 @@ import numpy as np
 from pytpc.base.wording import many
 from pytpc.recording.events import Events
 from pytpc.recording.mission import Recording
+from pytpc.static.parameters import base_key
 from pytpc.static.static_info import StaticInfo
 
 _NAMED = 3
@@ -67,10 +68,11 @@ def unknown_keys(events: Events, static_info: StaticInfo) -> dict[str, int]:
     They come from a program that was built at another time than the static information.
     """
     counts = Counter(events.key.tolist())
+    known = static_info.comparisons.keys() | static_info.set_aside
     return {
         key: counts[code]
         for code, key in enumerate(events.keys)
-        if counts[code] and key not in static_info.comparisons and key not in static_info.set_aside
+        if counts[code] and known.isdisjoint({key, base_key(key)})
     }
 
 

@@ -60,12 +60,15 @@ class Dropped:
 class ReadName:
     """The full name of the parameter that a node has read: ``/node/arm/limit``.
 
-    ``key`` is that of the read in the static information.
+    ``key`` is that of the read in the static information. ``object`` is the number of the object in
+    which it was read, as the process counts them; 0 if that is not said. Without a name, that
+    object evaluates the comparison ``key``.
     """
 
     key: str
     node: str
     name: str
+    object: int = 0
 
 
 @dataclass(frozen=True)
@@ -130,7 +133,12 @@ def write_marks_json(recording: Recording, folder: Path, events: int, summaries:
         "malformed_first": [asdict(record) for record in recording.malformed_first],
         "lost": recording.lost,
         "dropped": [asdict(dropped) for dropped in recording.dropped],
-        "names": [asdict(name) for name in recording.names],
+        "names": [
+            {"key": one.key, "node": one.node, "name": one.name}
+            for one in recording.names
+            if not one.object
+        ],
+        "objects": [asdict(one) for one in recording.names if one.object],
         "notes": list(recording.notes),
     }
     text = json.dumps(document, indent=1, sort_keys=True, ensure_ascii=False)
@@ -201,7 +209,11 @@ def _recording(document: object) -> tuple[Recording, int, int]:
         lost={str(node): int(count) for node, count in document["lost"].items()},
         notes=tuple(str(note) for note in document["notes"]),
         dropped=tuple(Dropped(**item) for item in document.get("dropped", [])),
-        names=tuple(ReadName(**item) for item in document.get("names", [])),
+        names=tuple(
+            sorted(
+                ReadName(**item) for name in ("names", "objects") for item in document.get(name, [])
+            )
+        ),
     )
     # Files of older versions say nothing of summaries.
     return recording, int(document["events"]), int(document.get("summaries", 0))

@@ -24,7 +24,7 @@ from pytpc.static.static_info import StaticInfo
 
 _CLOSEST = 5
 _FILE_LINE = re.compile(r"(?P<file>[^:]+):(?P<line>[0-9]{1,9})(:[0-9]+)?")
-_KEY = re.compile(r"[0-9a-f]{4,8}(-[0-9a-f-]*)?")
+_KEY = re.compile(r"(?P<key>[0-9a-f]{4,8}(-[0-9a-f-]*)?)(#[0-9]+)?")
 
 
 @dataclass(frozen=True)
@@ -61,8 +61,9 @@ def look_up(static: StaticInfo, question: str) -> Explanation:
     place = _FILE_LINE.fullmatch(question)
     if place is not None:
         return _at(static, question, place["file"], int(place["line"]))
-    if _KEY.fullmatch(question):
-        by_key = [found for found in _all(static) if found.comparison.key.startswith(question)]
+    if key := _KEY.fullmatch(question):
+        # Of an instance, too: what is known of the source holds for all of them.
+        by_key = [found for found in _all(static) if found.comparison.key.startswith(key["key"])]
         if by_key:
             return _explained(static, question, by_key, lambda _: False)
     return _of_parameter(static, question)

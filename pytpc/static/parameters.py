@@ -9,6 +9,29 @@ from pytpc.static.link_unit import Comparison
 DYNAMIC = "<dynamic>"
 """Replaces the part of a name that only the running node knows."""
 
+INSTANCE = "#"
+"""Stands between a key and the number of an instance: one of several objects of a class."""
+
+_OBJECT = re.compile(r" \((?:object [0-9]+|further objects)\)$")
+
+
+def base_key(key: str) -> str:
+    """The key of a comparison in the source, whichever object evaluated it."""
+    return key.partition(INSTANCE)[0]
+
+
+def of_instance(source: str, key: str) -> str:
+    """The name of a parameter that the instance of ``key`` has read, if no node has said it.
+
+    >>> of_instance("<dynamic>/radius", "6f1e#2"), of_instance("~radius", "6f1e#2")
+    ('<dynamic>/radius (object 2)', '~radius')
+    """
+    number = key.partition(INSTANCE)[2]
+    if not number or DYNAMIC not in source:
+        return source
+    which = f"object {number}" if number != "0" else "further objects"
+    return f"{_OBJECT.sub('', source)} ({which})"
+
 
 def same_parameter(given: str, source: str) -> bool:
     """Whether the name ``given`` by a person means the parameter ``source`` of the program.
@@ -17,6 +40,8 @@ def same_parameter(given: str, source: str) -> bool:
     ``~limit``, and ``limit`` means ``/node/arm/limit``. A part that the analysis does not know
     matches anything; a name that is wholly unknown matches only itself.
     """
+    if given != source:
+        source = _OBJECT.sub("", source)
     known = _relative(source.removeprefix(f"{DYNAMIC}/"))
     if given == source or DYNAMIC in (known, given):
         return given == source
@@ -47,9 +72,11 @@ def parameter_name(comparison: Comparison) -> str:
     """
     if comparison.source is None or comparison.read_at is None:
         return f"constant {comparison.name} at {comparison.file}:{comparison.lineno}"
-    if comparison.source != DYNAMIC:
-        return comparison.source
-    return f"{DYNAMIC} at {comparison.read_at.file}:{comparison.read_at.lineno}"
+    source = comparison.source
+    if _OBJECT.sub("", source) != DYNAMIC:
+        return source
+    read = comparison.read_at
+    return f"{DYNAMIC} at {read.file}:{read.lineno}{source.removeprefix(DYNAMIC)}"
 
 
 def _relative(name: str) -> str:

@@ -5,17 +5,21 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 from mission_samples import BagFile, comparison, events, key, line, link_unit
 from tpc_file import TpcFile, header, name, report, site
 
 from pytpc.cli.main import main
-from pytpc.diagnosis.full_names import with_full_names
+from pytpc.diagnosis.full_names import with_full_names, with_keys_of
 from pytpc.ingest.reading import read
+from pytpc.recording.events import Events
 from pytpc.recording.faults import unknown_keys
 from pytpc.recording.mission import ReadName, Recording, load_recording, save_recording
+from pytpc.static.explanations import look_up
 from pytpc.static.link_unit import ParameterRead, Place
+from pytpc.static.parameters import same_parameter
 from pytpc.static.static_info import StaticInfo
 
 NODE = "/move_base"
@@ -53,6 +57,160 @@ def test_two_objects_with_names_of_their_own_leave_it_open():
     given = static(comparison(1, "<dynamic>/radius"), reads=[read_at(3, "<dynamic>/radius")])
     other = replace(NAMED, name="/move_base/global/radius")
     assert with_full_names(given, mission([(1, 1, 0, 1, 2)], [NAMED, other]), {}) is given
+
+
+LOCAL, GLOBAL = "/move_base/local/radius", "/move_base/global/radius"
+
+
+def instance(number, of):
+    """The key of another object's evaluations."""
+    return f"{key(number)}#{of}"
+
+
+def rows_of(*keys):
+    """Two evaluations under each key, as a table of events."""
+    return Events.of(
+        time_ns=np.arange(2 * len(keys)),
+        key=np.repeat(np.arange(len(keys)), 2),
+        result=np.tile([False, True], len(keys)),
+        cmp=np.ones(2 * len(keys)),
+        thresh=np.full(2 * len(keys), 2.0),
+        res=np.tile([False, True], len(keys)),
+        node=np.zeros(2 * len(keys), np.int32),
+        keys=keys,
+        nodes=(NODE,),
+    )
+
+
+def two_objects(*names):
+    """Objects 7 and 5 evaluate comparison 1; what was told besides that."""
+    return Recording(
+        "m",
+        rows_of(key(1), instance(1, 2)),
+        (),
+        0,
+        10**9,
+        names=(ReadName(key(1), NODE, "", 7), ReadName(instance(1, 2), NODE, "", 5), *names),
+    )
+
+
+# Object 7 has read the local radius, object 5 the global one.
+def test_two_objects_have_the_names_that_each_has_read():
+    given = static(comparison(1, "<dynamic>/radius"), reads=[read_at(3, "<dynamic>/radius")])
+    told = two_objects(
+        ReadName(key(90), NODE, LOCAL),
+        ReadName(key(90), NODE, GLOBAL),
+        ReadName(key(90), NODE, LOCAL, 7),
+        ReadName(key(90), NODE, GLOBAL, 5),
+    )
+    found = with_full_names(given, told, {})
+    assert {one: found.comparisons[one].source for one in found.comparisons} == {
+        key(1): LOCAL,
+        instance(1, 2): GLOBAL,
+    }
+    # What the source says of a comparison holds for both of its objects.
+    assert found.comparisons[instance(1, 2)] == replace(
+        given.comparisons[key(1)], key=instance(1, 2), source=GLOBAL
+    )
+    assert [read.name for read in found.units[0].parameters] == [GLOBAL, LOCAL]
+    assert not unknown_keys(told.events, found)
+    assert found.unit_of(instance(1, 2)).link_unit == given.units[0].link_unit
+    # What has its names already stays.
+    assert with_full_names(found, told, {}) is found
+    # A user who copies the key of an instance gets what the source says.
+    assert [one.comparison.key for one in look_up(given, instance(1, 2)).comparisons] == [key(1)]
+
+
+# Both names are known, but not whose they are; then the number tells the objects apart.
+def test_two_objects_without_names_have_numbers():
+    given = static(
+        comparison(1, "<dynamic>/radius"),
+        comparison(2, "~patience"),
+        comparison(3, "<dynamic>/tolerance"),
+        reads=[read_at(3, "<dynamic>/radius")],
+    )
+    keys = (key(1), instance(1, 2), instance(1, 0), instance(2, 2), instance(1, 10))
+    names = (ReadName(key(90), NODE, LOCAL), ReadName(key(90), NODE, GLOBAL))
+    told = Recording("m", rows_of(*keys), (), 0, 10**9, names=names)
+    found = with_full_names(given, told, {}).comparisons
+    assert {one: found[one].source for one in found} == {
+        key(1): "<dynamic>/radius",
+        instance(1, 0): "<dynamic>/radius (further objects)",
+        instance(1, 2): "<dynamic>/radius (object 2)",
+        instance(1, 10): "<dynamic>/radius (object 10)",
+        key(2): "~patience",
+        instance(2, 2): "~patience",
+        key(3): "<dynamic>/tolerance",
+    }
+    again = with_full_names(with_full_names(given, told, {}), told, {}).comparisons
+    assert again == found
+    assert same_parameter("radius", "<dynamic>/radius (object 2)")
+    assert same_parameter("/move_base/local/radius", "<dynamic>/radius (further objects)")
+
+
+# In the good run the global object compared first, so the keys are the other way round, and a third
+# object has the number that is free in the mission.
+def test_the_objects_of_a_good_run_get_the_keys_of_the_mission():
+    given = static(comparison(1, "<dynamic>/radius"), reads=[read_at(3, "<dynamic>/radius")])
+    read = (
+        ReadName(key(90), NODE, LOCAL),
+        ReadName(key(90), NODE, GLOBAL),
+        ReadName(key(90), NODE, LOCAL, 7),
+        ReadName(key(90), NODE, GLOBAL, 5),
+    )
+    told = two_objects(*read)
+    good = Recording(
+        "good",
+        rows_of(key(1), instance(1, 2), instance(1, 3)),
+        (),
+        0,
+        10**9,
+        names=(*read, ReadName(key(1), NODE, "", 5), ReadName(instance(1, 2), NODE, "", 7)),
+    )
+    named = with_full_names(given, told, {})
+    found = with_keys_of(good, given, named)
+    assert found.events.keys == (instance(1, 2), key(1), instance(1, 3))
+    assert found.events.key.tolist() == good.events.key.tolist()
+    # The same order in both runs, and runs without instances, stay as they are.
+    assert with_keys_of(told, given, named) is told
+    plain = Recording("plain", rows_of(key(1)), (), 0, 1)
+    assert with_keys_of(plain, given, given) is plain
+
+
+# The mission's only object read the global radius; in the good run that was the second one. The
+# first one makes room.
+def test_an_object_that_only_the_good_run_has_gives_way():
+    given = static(comparison(1, "<dynamic>/radius"), reads=[read_at(3, "<dynamic>/radius")])
+    one = Recording("m", rows_of(key(1)), (), 0, 1, names=(ReadName(key(90), NODE, GLOBAL),))
+    good = two_objects(
+        ReadName(key(90), NODE, LOCAL),
+        ReadName(key(90), NODE, GLOBAL),
+        ReadName(key(90), NODE, LOCAL, 7),
+        ReadName(key(90), NODE, GLOBAL, 5),
+    )
+    found = with_keys_of(good, given, with_full_names(given, one, {}))
+    assert found.events.keys == (instance(1, 3), key(1))
+
+
+# The second object compares 0.5, and one radius of the server has that value.
+def test_the_value_tells_which_parameter_an_object_has():
+    table = rows_of(key(1), instance(1, 2))
+    table = replace(table, thresh=np.array([0.3, 0.3, 0.5, 0.5]))
+    given = static(comparison(1, "<dynamic>/radius"))
+    found = with_full_names(given, Recording("m", table, (), 0, 1), {LOCAL: 0.3, GLOBAL: 0.5})
+    assert sources(found) == [LOCAL, GLOBAL]
+
+
+# A parameter that one object reads is not an older name of what the other one reads.
+def test_an_unset_parameter_of_one_object_stays():
+    given = static(comparison(1, "<dynamic>/radius"), reads=[read_at(3, "<dynamic>/radius")])
+    told = two_objects(
+        ReadName(key(90), NODE, LOCAL),
+        ReadName(key(90), NODE, GLOBAL),
+        ReadName(key(90), NODE, LOCAL, 7),
+        ReadName(key(90), NODE, GLOBAL, 5),
+    )
+    assert sources(with_full_names(given, told, {LOCAL: 2.0})) == [LOCAL, GLOBAL]
 
 
 # The handle came from another link unit: the source has no namespace, the robot has one.
@@ -125,15 +283,58 @@ def test_names_in_every_form_of_a_recording(tmp_path):
     assert read(tmp_path / "converted").names == recording.names
 
 
+# The second object's evaluations have a key of their own in every form of a report.
+def test_objects_in_every_form_of_a_recording(tmp_path):
+    second = instance(1, 2)
+    bag = tmp_path / "mission.bag"
+    with BagFile(bag) as writer:
+        writer.log(10, NODE, line(1, 0, 1, 2))
+        writer.log(11, NODE, f"threshold_information:{second},1,cmp:3,thresh:2,res:1")
+        writer.log(12, NODE, f"threshold_name:{second},of:5")
+        writer.log(12, NODE, f"threshold_name:{key(90)},{LOCAL},of:5")
+        writer.log(12, NODE, f"threshold_name:{key(90)}")
+        batch = (
+            "#seq:0,count:1,dropped:0,pid:9,steady:1.0\n"
+            f"13.0,{second},0,cmp:1,thresh:2,res:0\n"
+            f"@12.0;13.0\n~{second},0,1,2,7\n"
+            f"13.0,threshold_name:{key(90)},{GLOBAL},of:7"
+        )
+        writer.text(13, "/threshold_information", NODE, batch)
+    recording = read(bag)
+    names = (
+        ReadName(key(90), NODE, GLOBAL, 7),
+        ReadName(key(90), NODE, LOCAL, 5),
+        ReadName(second, NODE, "", 5),
+    )
+    assert recording.names == tuple(sorted(names))
+    assert [one.what for one in recording.malformed_first] == [
+        "KEY,/full/name is expected, column 16"
+    ]
+    events = recording.events
+    assert [events.keys[code] for code in events.key] == [key(1), second, second]
+    # The outcome of the first object is none of the second's.
+    assert events.flop.tolist() == [False, False, True]
+    summaries = recording.summaries
+    assert [summaries.keys[code] for code in summaries.key] == [second]
+    save_recording(recording, tmp_path / "converted")
+    for again in (load_recording(tmp_path / "converted"), read(tmp_path / "converted")):
+        assert again.names == recording.names
+        assert again.events.keys == events.keys
+    # Versions that know of no objects read the rest.
+    document = json.loads((tmp_path / "converted" / "marks.json").read_text())
+    assert document["names"] == []
+
+
 def test_names_in_a_file_of_reports(tmp_path):
     long = "/move_base/" + "l" * 100
     made = TpcFile(header(node=NODE))
     made.system(site(1, key(1)), name(f"{key(90)},{NAMED.name}"), name(f"{key(91)},{long}"),
-                name("nonsense"), site(2, key(2)))  # fmt: skip
+                name("nonsense"), name(f"{key(2)}#2,of:3"), site(2, f"{key(2)}#2"))  # fmt: skip
     made.thread(1, report(1, 1, 0, 0), report(2, 2, 0, 0))
     recording = read(made.write(tmp_path / "x.tpc"))
-    assert recording.names == (NAMED, ReadName(key(91), NODE, long))
-    assert len(recording.events) == 2
+    told = (NAMED, ReadName(key(91), NODE, long), ReadName(f"{key(2)}#2", NODE, "", 3))
+    assert recording.names == tuple(sorted(told))
+    assert recording.events.keys == (key(1), f"{key(2)}#2")
     assert [one.what.partition(" at ")[0] for one in recording.malformed_first] == [
         "KEY,/full/name is expected"
     ]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 
 import pytest
-from mission_samples import comparison, events, key, static_info
+from mission_samples import comparison, events, key, link_unit, static_info
 from rich.cells import cell_len
 from rich.text import Text
 
@@ -17,10 +17,12 @@ from pytpc.diagnosis.scores.live_scores import LiveRanking
 from pytpc.present.watch_screen import LAYOUTS, Panel, Status, WatchOptions, table, watch_screen
 from pytpc.recording.marking_session import MarkChange, Session, View
 from pytpc.recording.marks import Mark
-from pytpc.recording.mission import Recording
+from pytpc.recording.mission import ReadName, Recording
 from pytpc.recording.summaries import Summary
 from pytpc.ros.ros1.publisher import encode_string
 from pytpc.ros.ros1.subscriber import Source
+from pytpc.static.link_unit import ParameterRead
+from pytpc.static.static_info import StaticInfo
 
 S = 10**9
 STATIC = static_info(comparison(0, "~speed"), comparison(1, "~limit"), comparison(2, "~gain"))
@@ -66,6 +68,46 @@ def test_both_rankings_and_what_stands_beside_the_scores():
     assert [row.suspect.score for row in second] == pytest.approx([4 / 9, 14 / 3 / 8])
     assert second[1].flop_s is None
     assert look.parameters == 3
+
+
+# The second object of a class flops at 102 s and 104 s; the first one, with other values, never
+# does. Type I at 110 s: (110 - 104) * (1 + 2) = 18. Mixed, each evaluation would be a flop.
+def test_objects_are_watched_apart():
+    second = f"{key(0)}#2"
+    given = static_info(comparison(0, "<dynamic>/speed"), comparison(1, "~limit"))
+    found = Watching(LiveRanking(given), given)
+    before = found.snapshot()
+    for at, cmp in ((100, 4), (102, 2), (104, 4)):
+        found.take(seen(at - 1, 0, 9, 3))
+        found.take(seen(at, 0, cmp, 3)._replace(key=second))
+        found.take(seen(at, 1, 0, 3))
+    (row,) = found.look(110 * S, 5).rows["I"]
+    assert row.suspect.key == second
+    assert row.suspect.parameter == "<dynamic>/speed (object 2)"
+    assert row.suspect.score == pytest.approx(18)
+    assert not found.unknown
+    # A copy from before knows nothing of it.
+    assert second not in before.static_info.comparisons
+    found.take(Seen(105 * S, "0badbad0-0000-5000-8000-000000000000#2", "/a", True, 1, 0, True))
+    assert list(found.unknown.values()) == [1]
+
+
+def test_names_that_nodes_tell_are_watched():
+    read = ParameterRead(
+        "<dynamic>/speed", "ros::NodeHandle::param", "double", None, "src/node.cpp", 3, 5, "main",
+        key(90),
+    )  # fmt: skip
+    unit = link_unit([comparison(0, "<dynamic>/speed"), comparison(1, "~limit")], [read])
+    given = StaticInfo.of([unit])
+    table = events([(100, 0, 0, 1, 3), (104, 0, 1, 4, 3), (105, 1, 0, 1, 3)])
+    told = Recording(
+        "m", table, (), 0, 200 * S, names=(ReadName(key(90), "/node", "/node/arm/speed"),)
+    )
+    taken, items = RecordedFeed(told, Watching(LiveRanking(given), given)).take(200 * S)
+    for item in items:
+        taken.take(item)
+    (row,) = taken.look(110 * S, 5).rows["I"]
+    assert row.suspect.parameter == "/node/arm/speed"
 
 
 # A part is 12 s / 8 = 1.5 s. At 110 s the newest is [109.5, 111) and the oldest [99, 100.5).

@@ -11,13 +11,17 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from pytpc.diagnosis.full_names import with_full_names
 from pytpc.diagnosis.question import WINDOW_S
 from pytpc.diagnosis.results.live import Kept, LiveRow, Look, Seen, TrendPart
 from pytpc.diagnosis.results.suspects import MarkRanking, Suspect
 from pytpc.diagnosis.scores.live_scores import LiveRanking
+from pytpc.recording.events import Events
 from pytpc.recording.marking_session import MarkChange
 from pytpc.recording.marks import Mark, MarkType
+from pytpc.recording.mission import ReadName, Recording
 from pytpc.recording.summaries import Summary
+from pytpc.static.parameters import base_key
 from pytpc.static.static_info import StaticInfo
 
 BINS = 8
@@ -62,7 +66,11 @@ class Watching:
         """Start without an evaluation."""
         self._engine = engine
         self.static_info = static_info
+        self._given = static_info
         self._known = static_info.comparisons
+        self._instances: set[str] = set()
+        self._names: set[ReadName] = set()
+        self._has_new_names = False
         self._bin_ns = max(1, round(window_s * 1e9) // BINS)
         self._tracks: dict[str, _Track] = {}
         self.reports = 0
@@ -79,7 +87,7 @@ class Watching:
         """Take in an evaluation; those of unknown comparisons are only counted."""
         self._note(seen.time_ns, seen.node)
         self.reports += 1
-        if seen.key not in self._known:
+        if not self._knows(seen.key):
             self.unknown[seen.key] = self.unknown.get(seen.key, 0) + 1
             return
         self._engine.scores.add(*seen)
@@ -104,7 +112,7 @@ class Watching:
         """Take in a summary of many evaluations; its flops arrive as evaluations."""
         self._note(summary.end_ns, summary.node)
         self.reports += summary.count
-        if summary.key not in self._known:
+        if not self._knows(summary.key):
             self.unknown[summary.key] = self.unknown.get(summary.key, 0) + summary.count
             return
         self._engine.scores.add_summary(summary)
@@ -120,12 +128,41 @@ class Watching:
             track.low = min(track.low, summary.low)
             track.high = max(track.high, summary.high)
 
+    def take_name(self, name: ReadName) -> None:
+        """Take in the name of a parameter; nodes repeat them."""
+        if name not in self._names:
+            self._names.add(name)
+            self._has_new_names = True
+
+    def _knows(self, key: str) -> bool:
+        """Whether the analysis has found this comparison; then so it has each of its instances."""
+        if key in self._known:
+            return True
+        if base_key(key) not in self._known:
+            return False
+        self._instances.add(key)
+        self._learn()
+        return key in self._known
+
+    def _learn(self) -> None:
+        """Give the instances that were seen, and the names that were told, to the ranking."""
+        keys = Events.empty(sorted(self._instances))
+        told = Recording("", keys, (), 0, 0, names=tuple(sorted(self._names)))
+        self.static_info = with_full_names(self._given, told, {})
+        self._known = self.static_info.comparisons
+        self._engine.learn(self.static_info)
+        self._has_new_names = False
+
     def ranking_at(self, mark: Mark) -> MarkRanking:
         """The suspects at an instant, as `LiveRanking.ranking_at` gives them."""
+        if self._has_new_names:
+            self._learn()
         return self._engine.ranking_at(mark)
 
     def look(self, now_ns: int, top: int, kinds: Sequence[MarkType | None] = KINDS) -> Look:
         """What to show now: the first ``top`` suspects of each of ``kinds``."""
+        if self._has_new_names:
+            self._learn()
         found = self._engine.rankings_at(now_ns, [Mark(now_ns, kind) for kind in kinds])
         return self.look_of(dict(zip(kinds, found, strict=True)), now_ns, top)
 
@@ -145,7 +182,12 @@ class Watching:
 
     def snapshot(self) -> Watching:
         """An independent copy, which shares what the analysis found."""
-        shared: Iterable[object] = (self.static_info, self._known, *self._known.values())
+        shared: Iterable[object] = (
+            self.static_info,
+            self._given,
+            self._known,
+            *self._known.values(),
+        )
         return copy.deepcopy(self, {id(one): one for one in shared})
 
     def _note(self, time_ns: int, node: str) -> None:

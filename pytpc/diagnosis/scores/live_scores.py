@@ -77,18 +77,24 @@ class LiveScores:
             raise ValueError("one distance for each key is needed")
         if len(set(keys)) != len(keys):
             raise ValueError("a key is there twice")
-        self.tpcs = Tpcs(tuple(keys), distances, tuple(keys))
         self.window_s = window_s
         self.late = 0
         self.first_ns: dict[str, int] = {}
-        self._codes = {key: code for code, key in enumerate(keys)}
         self._window_ns = round(window_s * 1e9)
         self._keep_ns = self._window_ns + round(late_s * 1e9)
         self._again_ns = round(self._keep_ns * AGAIN)
         self._number = 0
         # By key and node.
-        self._streams: dict[str, dict[str, EventStream]] = {key: {} for key in keys}
-        self._summaries: dict[str, dict[str, SummaryStream]] = {key: {} for key in keys}
+        self._streams: dict[str, dict[str, EventStream]] = {}
+        self._summaries: dict[str, dict[str, SummaryStream]] = {}
+        self.learn(keys, distances)
+
+    def learn(self, keys: Sequence[str], distances: Floats) -> None:
+        """Make these the comparisons; known ones keep their reports."""
+        self.tpcs = Tpcs(tuple(keys), distances, tuple(keys))
+        self._codes = {key: code for code, key in enumerate(keys)}
+        self._streams = {key: self._streams.get(key, {}) for key in keys}
+        self._summaries = {key: self._summaries.get(key, {}) for key in keys}
 
     # One argument for each column of an event: this is called thousands of times a second.
     def add(  # noqa: PLR0913, PLR0917
@@ -281,9 +287,16 @@ class LiveRanking:
             static_info: what the analysis found.
             question: its ``types`` and ``window_s``, as for `rank_marks`.
         """
+        self._question = question
         self._tpcs = Tpcs.of(static_info)
         self.scores = LiveScores(self._tpcs.keys, self._tpcs.distance, question.window_s)
         self._ranker = Ranker(static_info, self._tpcs, self.scores, question)
+
+    def learn(self, static_info: StaticInfo) -> None:
+        """Go on with more or renamed comparisons; known ones keep their reports."""
+        self._tpcs = Tpcs.of(static_info)
+        self.scores.learn(self._tpcs.keys, self._tpcs.distance)
+        self._ranker = Ranker(static_info, self._tpcs, self.scores, self._question)
 
     def ranking_at(self, mark: Mark) -> MarkRanking:
         """What `rank_marks` would give for a mark in a recording of all reports so far.
