@@ -62,6 +62,8 @@ struct Findings {
   std::vector<NamedRead> Names;
   unsigned NotInstrumented = 0;
   std::string Failure;
+  /// Why the analysis has not found everything that it could; empty if it has.
+  std::string Incomplete;
   /// The functions that reports need were copied or inlined.
   bool IsChanged = false;
 };
@@ -88,6 +90,29 @@ struct OwnAnalyses {
   }
 };
 } // namespace
+
+static cl::opt<std::string>
+    SpentStage("tpc-spend", cl::Hidden,
+               cl::desc("Leave nothing to this stage (for tests)"));
+
+template <typename Analysis>
+static void runWithin(double Fraction, Module &M, ModuleAnalysisManager &AM) {
+  Budget::Share Part(Fraction);
+  if (Analysis::name() == SpentStage)
+    Budget::spend();
+  AM.getResult<Analysis>(M);
+}
+
+/// Runs the expensive stages in order. Each may use most of what is left of the
+/// budget, but not all.
+static void analyse(Module &Seen, ModuleAnalysisManager &AM) {
+  runWithin<PointsToAnalysis>(0.7, Seen, AM);
+  runWithin<VisibleWritesAnalysis>(0.7, Seen, AM);
+  runWithin<IfStatements>(0.7, Seen, AM);
+  runWithin<BackwardPropagate>(0.7, Seen, AM);
+  runWithin<ParamUsageFinder>(0.7, Seen, AM);
+  runWithin<GatherResults>(1, Seen, AM);
+}
 
 /// The functions that must be copied for each of their calls before a report
 /// inside them is unambiguous.
@@ -124,6 +149,12 @@ static void planReports(AnalysedModule &Analysed, ModuleAnalysisManager &AM,
     Out.Reports.push_back(std::move(*Plan));
   };
   for (const Comparison &C : R.Comparisons) {
+    // What has not been copied for its calls would report them all.
+    if (!Out.Incomplete.empty() &&
+        R.Shared.contains(const_cast<Function *>(C.place().getFunction()))) {
+      ++Out.NotInstrumented;
+      continue;
+    }
     StringRef Type = Reads[C.Reads.front()].Type;
     Plan(C, Type.starts_with("unsigned") || Type == "bool");
   }
@@ -163,18 +194,22 @@ static Findings analyseSafely(Module &M, ModuleAnalysisManager &AM,
     Analysed.separate(findNamedHelpers(Analysed.module(), Opts, Rules));
     for (unsigned Round = 0;; ++Round) {
       fail(Opts.InjectFailure);
+      double Before = Limits.used();
       OwnAnalyses Own(Opts, Rules);
       Module &Seen = Analysed.module();
+      analyse(Seen, Own.AM);
       std::vector<std::string> Shared = findSharedFunctions(Seen, Own.AM);
-      // If time or memory ran out, report what has been counted so far.
-      bool Spent = !Limits.why().empty();
-      if (!Spent && Round < MaxSeparated &&
+      // Another round takes about as long, and begins from nothing.
+      double After = Limits.used();
+      if (!Shared.empty() && Round < MaxSeparated && After + After - Before > 1)
+        Limits.leaveOut();
+      if (Limits.why().empty() && Round < MaxSeparated &&
           Analysed.separate(std::move(Shared)))
         continue;
       Out->Unit = describe(Seen, Own.AM, Opts);
-      Out->Failure = Limits.why();
+      Out->Incomplete = Limits.why();
       fail(Opts.InjectLateFailure);
-      if (Out->Failure.empty() && Opts.Instrument)
+      if (Opts.Instrument)
         planReports(Analysed, Own.AM, Opts, *Out);
       return;
     }
@@ -211,8 +246,14 @@ PreservedAnalyses LinkUnitPass::run(Module &M, ModuleAnalysisManager &AM) {
                                         : "; this link unit is not changed"));
     F.Unit =
         describeFailure(Opts, F.Failure, F.Unit.Fields.getObject("counts"));
-  } else if (json::Object *Counts = F.Unit.Fields.getObject("counts")) {
-    (*Counts)["not_instrumented"] = F.NotInstrumented;
+  } else {
+    if (json::Object *Counts = F.Unit.Fields.getObject("counts"))
+      (*Counts)["not_instrumented"] = F.NotInstrumented;
+    if (!F.Incomplete.empty()) {
+      F.Unit.Fields["incomplete"] = F.Incomplete;
+      warn(Opts, F.Incomplete + "; the comparisons found so far will report, "
+                                "others may be missing");
+    }
   }
   if (!Opts.StaticInfo.empty())
     if (Error E = writeJson(std::move(F.Unit), Opts.StaticInfo))

@@ -348,6 +348,9 @@ void PointsToSolver::findTargets() {
     if (Round == MaxRounds)
       LLVM_DEBUG(dbgs() << "points-to: stopped at the limit of rounds\n");
   }
+  // What has not been checked to the end is not known to be complete.
+  if (Budget::isSpent())
+    R.Complete.clear();
 }
 
 } // namespace tpc

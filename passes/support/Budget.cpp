@@ -1,6 +1,7 @@
 //===- Budget.cpp ---------------------------------------------------------===//
 #include "support/Budget.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <ctime>
 #include <unistd.h>
@@ -35,20 +36,52 @@ Budget::Budget(unsigned MaxSeconds, unsigned MaxMemory)
 
 Budget::~Budget() { Current = Outer; }
 
-bool Budget::look() {
-  if (MaxSeconds && seconds() - SecondsBefore > MaxSeconds)
-    Why = "the analysis takes more than " + std::to_string(MaxSeconds) +
-          " s (-tpc-max-seconds raises the limit, TPC_MAX_SECONDS in CMake)";
-  else if (MaxMemory && memory() - MemoryBefore > MaxMemory)
-    Why = "the analysis takes more than " + std::to_string(MaxMemory) +
-          " MiB (-tpc-max-memory raises the limit, TPC_MAX_MEMORY in CMake)";
-  return Spent = !Why.empty();
+double Budget::usedTime() const {
+  return MaxSeconds ? (seconds() - SecondsBefore) / MaxSeconds : 0;
 }
 
-std::string Budget::why() {
-  if (!Spent)
-    look();
-  return Why;
+double Budget::usedMemory() const {
+  return MaxMemory ? (memory() - MemoryBefore) / MaxMemory : 0;
+}
+
+double Budget::used() const { return std::max(usedTime(), usedMemory()); }
+
+/// The clock is cheap to read, the memory is not.
+static constexpr unsigned LooksAtMemory = 8;
+
+bool Budget::look() {
+  Spent = usedTime() > End ||
+          (Asked / LookEvery % LooksAtMemory == 0 && usedMemory() > End);
+  if (Spent)
+    leaveOut();
+  return Spent;
+}
+
+void Budget::leaveOut() {
+  if (!Why.empty())
+    return;
+  if (usedTime() >= usedMemory())
+    Why = "the analysis does not fit into " + std::to_string(MaxSeconds) +
+          " s (-tpc-max-seconds raises the limit, TPC_MAX_SECONDS in CMake)";
+  else
+    Why = "the analysis does not fit into " + std::to_string(MaxMemory) +
+          " MiB (-tpc-max-memory raises the limit, TPC_MAX_MEMORY in CMake)";
+}
+
+Budget::Share::Share(double Fraction) {
+  if (!Current)
+    return;
+  Before = Current->End;
+  double Used = Current->used();
+  Current->End = Used + std::max(Fraction * (Before - Used), 0.05);
+  Current->Spent = false;
+}
+
+Budget::Share::~Share() {
+  if (!Current)
+    return;
+  Current->End = Before;
+  Current->Spent = false;
 }
 
 } // namespace tpc

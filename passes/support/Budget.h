@@ -1,8 +1,9 @@
 //===- Budget.h - Limits on time and memory -------------------------------===//
 //
 // Does not depend on LLVM. The loops of an analysis ask whether the budget is
-// spent and, if so, end with what they have; LinkUnit then discards the
-// findings and leaves the link unit unchanged. A single call into LLVM is not
+// spent and, if so, end with what they have. Each stage of the analysis gets a
+// share, so that the stages after it can use what it has found: an analysis
+// that is too expensive finds less, not nothing. A single call into LLVM is not
 // interrupted.
 //
 //===----------------------------------------------------------------------===//
@@ -25,24 +26,55 @@ public:
   Budget(const Budget &) = delete;
   Budget &operator=(const Budget &) = delete;
 
-  /// True once the budget of the thread is spent; false if it has none. Cheap
-  /// enough for loops: reads the clock only now and then.
+  /// Limits what the thread does during its lifetime to a fraction of what is
+  /// left of the budget, but at least to a twentieth of all of it.
+  class Share {
+  public:
+    explicit Share(double Fraction);
+    ~Share();
+    Share(const Share &) = delete;
+    Share &operator=(const Share &) = delete;
+
+  private:
+    double Before = 1;
+  };
+
+  /// True once the budget of the thread, or the current share of it, is spent;
+  /// false if it has none. Cheap enough for loops: reads the clock only now and
+  /// then.
   static bool isSpent() {
     return Current && (Current->Spent ||
                        (++Current->Asked % LookEvery == 0 && Current->look()));
   }
 
-  /// Which limit was exceeded, as a message; empty if none was.
-  std::string why();
+  /// Spends what is left of the current share.
+  static void spend() {
+    if (Current) {
+      Current->Spent = true;
+      Current->leaveOut();
+    }
+  }
+
+  /// How much of the budget is used, of time or of memory, whichever is more;
+  /// above 1 if it is exceeded.
+  double used() const;
+
+  /// Which limit ended some stage early, as a message; empty if none did.
+  const std::string &why() const { return Why; }
+  /// For why(): something was left out because the budget would not suffice.
+  void leaveOut();
 
 private:
   static constexpr unsigned LookEvery = 128;
   bool look();
+  double usedTime() const;
+  double usedMemory() const;
 
   static thread_local Budget *Current;
   Budget *Outer;
   unsigned MaxSeconds, MaxMemory;
   double SecondsBefore, MemoryBefore;
+  double End = 1; ///< of the current share, as a fraction of the budget
   uint32_t Asked = 0;
   bool Spent = false;
   std::string Why;

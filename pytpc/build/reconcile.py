@@ -138,9 +138,11 @@ def stale_files(build_folder: Path, files: list[Path]) -> Iterator[Path]:
 
 
 def remark(unit: LinkUnit) -> str:
-    """The status of an analysed unit: ``ok``, or why it has no comparisons."""
+    """The status of an analysed unit: ``ok``, or why it has no or too few comparisons."""
     if unit.status != "ok":
         return "left as it was"
+    if unit.incomplete is not None:
+        return "not analysed to the end"
     counts = unit.counts
     if not counts.comparisons and not counts.parameter_reads and not counts.exposing_statements:
         return "no ROS call"

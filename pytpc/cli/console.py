@@ -116,12 +116,9 @@ def tell_left_out(static: StaticInfo) -> None:
 
 
 def warn_of_failed(static: StaticInfo) -> None:
-    """A line for each link unit that was not instrumented."""
-    for unit in static.failed:
-        warn(
-            f"{unit.link_unit} of package {unit.package} is not instrumented and reports nothing:"
-            f" {unit.failure}"
-        )
+    """A line for each link unit that was not analysed, or not to the end."""
+    for text in static.troubles:
+        warn(text)
 
 
 def found_text(static: StaticInfo) -> str:

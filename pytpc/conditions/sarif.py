@@ -76,7 +76,7 @@ def sarif_log(
                 "invocations": [
                     {
                         "executionSuccessful": True,
-                        "toolExecutionNotifications": [_failure(unit) for unit in static.failed],
+                        "toolExecutionNotifications": [_warning(text) for text in static.troubles],
                     }
                 ],
                 "originalUriBaseIds": {_ROOT: {"uri": _uri(root.rstrip("/") + "/")}},
@@ -220,13 +220,8 @@ def _step(step: PathStep, unit: LinkUnit, places: _Places) -> dict[str, Any]:
     }
 
 
-def _failure(unit: LinkUnit) -> dict[str, Any]:
-    return {
-        "level": "warning",
-        "message": {
-            "text": f"{unit.package}/{unit.link_unit} was not analysed: {unit.failure}",
-        },
-    }
+def _warning(text: str) -> dict[str, Any]:
+    return {"level": "warning", "message": {"text": text}}
 
 
 def _common(roots: Sequence[str]) -> str:

@@ -55,8 +55,7 @@ def faults_of(recording: Recording, static_info: StaticInfo | None = None) -> It
         count = sum(dropped.count for dropped in recording.dropped)
         reasons = ", ".join(sorted({dropped.why for dropped in recording.dropped}))
         yield f"{many(count, 'report')} left out by the nodes themselves ({reasons})"
-    for unit in static_info.failed if static_info is not None else ():
-        yield f"{unit.package}/{unit.link_unit} was not analysed: {unit.failure}"
+    yield from static_info.troubles if static_info is not None else ()
     yield from recording.notes
     if static_info is not None:
         yield from two_clocks(recording)

@@ -220,7 +220,8 @@ class LinkUnit:
     """One executable or shared library as the analysis saw it.
 
     If the analysis or the instrumentation failed, ``status`` is ``failed``, ``failure`` says why
-    and the lists are empty; such a unit runs as its author wrote it and reports nothing. ``script``
+    and the lists are empty; such a unit runs as its author wrote it and reports nothing. If the
+    analysis ended early, ``incomplete`` says why, and the lists have what it found. ``script``
     is the script of a Python unit, relative to ``source_root``; None for all others.
     ``build_folder`` is CMake's, absolute; None if the unit was not read from there.
     """
@@ -239,6 +240,17 @@ class LinkUnit:
     blind_spots: tuple[BlindSpot, ...] = ()
     script: str | None = None
     build_folder: str | None = None
+    incomplete: str | None = None
+
+    @property
+    def trouble(self) -> str | None:
+        """What the analysis could not do, and why; None if nothing."""
+        name = f"{self.package}/{self.link_unit}"
+        if self.failure is not None:
+            return f"{name} was not analysed and reports nothing: {self.failure}"
+        if self.incomplete is not None:
+            return f"{name} was not analysed to the end, comparisons may be missing: {self.incomplete}"
+        return None
 
     @property
     def is_python(self) -> bool:
@@ -306,7 +318,7 @@ def _comparison(data: dict[str, Any]) -> Comparison:
 # Fields that only one half of TPC writes, or only one kind of transform has.
 _OPTIONAL = frozenset(
     {"analysis", "end_lineno", "end_column", "key", "operand", "script", "build_folder"}
-    | {"loop_depth", "scale", "offset", "tree"}
+    | {"incomplete", "loop_depth", "scale", "offset", "tree"}
 )
 
 

@@ -118,6 +118,11 @@ class StaticInfo:
         """The units that were not instrumented."""
         return tuple(unit for unit in self.units if unit.status == "failed")
 
+    @property
+    def troubles(self) -> tuple[str, ...]:
+        """A line for each unit that was not analysed, or not to the end."""
+        return tuple(unit.trouble for unit in self.units if unit.trouble is not None)
+
     def unit_of(self, key: str) -> LinkUnit:
         """The link unit that holds the comparison ``key``.
 

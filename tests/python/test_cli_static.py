@@ -51,7 +51,7 @@ def test_collect_writes_one_file_and_warns(build_base: Path, tmp_path: Path) -> 
     result = run("collect", build_base, "-o", output)
     assert (result.exit_code, result.stderr) == (
         0,
-        "pytpc: warning: broken of package arm is not instrumented and reports nothing:"
+        "pytpc: warning: arm/broken was not analysed and reports nothing:"
         " the instrumented module does not verify\n",
     )
     assert result.stdout.splitlines()[-1] == f"2 comparisons in 3 link units: {output}"

@@ -85,7 +85,7 @@ def test_build_hands_over_its_options_and_shows_the_result(
     )
     assert result.stderr.splitlines() == [
         "Starting >>> face",
-        "pytpc: warning: broken of package face is not instrumented and reports nothing:"
+        "pytpc: warning: face/broken was not analysed and reports nothing:"
         " the instrumented module does not verify",
         "face/thin reports nothing: it is a test",
         "pytpc: warning: package leg was built without TPC, because it does not build with it:"

@@ -130,3 +130,8 @@ def test_what_is_said_of_an_analysed_unit(counts: dict[str, int], said: str) -> 
 
 def test_a_failed_unit_was_left_as_it_was() -> None:
     assert remark(LinkUnit.from_json(failed_unit(), Path("x"))) == "left as it was"
+
+
+def test_a_unit_may_not_be_analysed_to_the_end() -> None:
+    data = unit(incomplete="the analysis takes more than 1 s")
+    assert remark(LinkUnit.from_json(data, Path("x"))) == "not analysed to the end"

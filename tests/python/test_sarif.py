@@ -177,5 +177,5 @@ def test_a_failed_unit_is_a_notification() -> None:
     (invocation,) = log_of(failed_unit())["runs"][0]["invocations"]
     (notice,) = invocation["toolExecutionNotifications"]
     assert notice["message"]["text"] == (
-        "face/broken was not analysed: the instrumented module does not verify"
+        "face/broken was not analysed and reports nothing: the instrumented module does not verify"
     )

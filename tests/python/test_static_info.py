@@ -210,6 +210,17 @@ def test_collect_merges_and_sorts_units(tmp_path: Path) -> None:
     assert seen == [(1, 3), (2, 3), (3, 3)]
 
 
+def test_an_analysis_that_ended_early_keeps_its_comparisons_and_is_told(tmp_path: Path) -> None:
+    write(tmp_path / "arm/tpc/mover.json", unit(package="arm", incomplete="it takes more than 1 s"))
+    static = collect(tmp_path)
+    assert len(static.comparisons) == 1
+    assert static.troubles == (
+        "arm/detector was not analysed to the end, comparisons may be missing:"
+        " it takes more than 1 s",
+    )
+    assert static.units[0].to_json()["incomplete"] == "it takes more than 1 s"
+
+
 def test_source_paths_are_absolute(tmp_path: Path) -> None:
     static = collect(two_packages(tmp_path))
     assert static.source_path(KEYS[0]) == Path("/ws/src/face/src/detector.cpp")

@@ -90,10 +90,7 @@ def render(static: StaticInfo, found: Sequence[Details], title: str) -> str:
             script=script,
             script_hash=script_hash(script),
             facts=_summary(static, found),
-            warnings=[
-                f"{unit.package}/{unit.link_unit} was not analysed: {unit.failure}"
-                for unit in static.failed
-            ],
+            warnings=list(static.troubles),
         )
     )
 
