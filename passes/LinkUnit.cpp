@@ -166,12 +166,6 @@ static void planReports(AnalysedModule &Analysed, ModuleAnalysisManager &AM,
       Out.Names.push_back(std::move(*Name));
 }
 
-static std::vector<std::string> findNamedHelpers(Module &M, const Options &Opts,
-                                                 const RuleTables &Rules) {
-  OwnAnalyses Own(Opts, Rules);
-  return namedByCalls(M, Own.AM);
-}
-
 /// Each round analyses the link unit again. Checks are rarely nested more
 /// deeply than this.
 static cl::opt<unsigned> MaxSeparated(
@@ -191,26 +185,33 @@ static Findings analyseSafely(Module &M, ModuleAnalysisManager &AM,
     if (!Out->Failure.empty())
       return;
     AnalysedModule Analysed(M, Opts, Rules.Tables);
-    Analysed.separate(findNamedHelpers(Analysed.module(), Opts, Rules));
+    auto Own = std::make_unique<OwnAnalyses>(Opts, Rules);
+    // A copy is another module: nothing is known of it.
+    auto Separate = [&](std::vector<std::string> Names) {
+      if (!Analysed.separate(std::move(Names)))
+        return false;
+      Own = std::make_unique<OwnAnalyses>(Opts, Rules);
+      return true;
+    };
+    Separate(namedByCalls(Analysed.module(), Own->AM));
     for (unsigned Round = 0;; ++Round) {
       fail(Opts.InjectFailure);
       double Before = Limits.used();
-      OwnAnalyses Own(Opts, Rules);
       Module &Seen = Analysed.module();
-      analyse(Seen, Own.AM);
-      std::vector<std::string> Shared = findSharedFunctions(Seen, Own.AM);
+      analyse(Seen, Own->AM);
+      std::vector<std::string> Shared = findSharedFunctions(Seen, Own->AM);
       // Another round takes about as long, and begins from nothing.
       double After = Limits.used();
       if (!Shared.empty() && Round < MaxSeparated && After + After - Before > 1)
         Limits.leaveOut();
       if (Limits.why().empty() && Round < MaxSeparated &&
-          Analysed.separate(std::move(Shared)))
+          Separate(std::move(Shared)))
         continue;
-      Out->Unit = describe(Seen, Own.AM, Opts);
+      Out->Unit = describe(Seen, Own->AM, Opts);
       Out->Incomplete = Limits.why();
       fail(Opts.InjectLateFailure);
       if (Opts.Instrument)
-        planReports(Analysed, Own.AM, Opts, *Out);
+        planReports(Analysed, Own->AM, Opts, *Out);
       return;
     }
   });

@@ -141,10 +141,13 @@ void PointsToSolver::collect(unsigned Number, Locations &Out) {
   Content &C = Contents[Number];
   if (C.Found.size() < MaxLocations &&
       (!C.Done || SlotGrown.lookup(LocationIndex::slotOf(Where)) > C.Done)) {
-    auto Add = [&](unsigned S) {
-      if (any_of(PointerStores[S].Where,
-                 [&](const Location &To) { return Alias.mayBe(To, Where); }))
-        R.addPointees(PointerStores[S].I->getValueOperand(), C.Found);
+    auto Add = [&](unsigned Number) {
+      const PointerStore &S = PointerStores[Number];
+      if (S.Grown > C.Done && any_of(S.Where, [&](const Location &To) {
+            return Alias.mayBe(To, Where);
+          }))
+        for (const Location &L : S.Stored)
+          addTo(C.Found, L);
     };
     if (Where.Root || Unrooted)
       PointerStoreIndex.eachWithRootOf(Where, Add);
@@ -199,11 +202,14 @@ bool PointsToSolver::update(PointerStore &S, unsigned Number) {
         PointerStoreIndex.add(Number, L);
         More = true;
       }
-  More |= hasGrown(S.I->getValueOperand(), S.Done);
+  if (!S.Done || hasGrown(S.I->getValueOperand(), S.Done)) {
+    R.addPointees(S.I->getValueOperand(), S.Stored);
+    More = true;
+  }
   S.Done = Now;
   if (!More)
     return false;
-  ++Now;
+  S.Grown = ++Now;
   for (const Location &L : S.Where)
     SlotGrown[LocationIndex::slotOf(L)] = Now;
   return true;

@@ -38,8 +38,10 @@ private:
   /// A store of a pointer.
   struct PointerStore {
     const llvm::StoreInst *I;
-    Locations Where = {};
+    Locations Where = {};  ///< the places that it stores to
+    Locations Stored = {}; ///< what the pointer leads to
     unsigned Done = 0;
+    unsigned Grown = 0; ///< when either of them last gained something
   };
   /// The pointers stored at a place, which all loads of it find.
   struct Content {

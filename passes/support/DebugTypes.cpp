@@ -87,7 +87,15 @@ static bool isNamedAs(const DICompositeType &Class, const StructType &Struct) {
 }
 
 const DICompositeType *DebugTypes::asStruct(const DIType *T,
-                                            StructType *Struct) const {
+                                            StructType *Struct) {
+  auto [It, New] = Structs.try_emplace({T, Struct}, nullptr);
+  if (New)
+    It->second = findStruct(T, Struct);
+  return It->second;
+}
+
+const DICompositeType *DebugTypes::findStruct(const DIType *T,
+                                              StructType *Struct) const {
   uint64_t Bits = Struct->isSized()
                       ? Layout.getTypeAllocSize(Struct).getFixedValue() * 8
                       : 0;
@@ -292,7 +300,7 @@ const DIType *DebugTypes::firstScalar(const DIType *T) const {
 /// The type of \p Local, which is not a variable of the source, according to
 /// the functions that get a pointer to it, inlined or not: a class with its
 /// name, otherwise with its size.
-const DIType *DebugTypes::ofTemporary(const AllocaInst &Local) const {
+const DIType *DebugTypes::ofTemporary(const AllocaInst &Local) {
   auto *Struct = dyn_cast<StructType>(Local.getAllocatedType());
   if (!Struct)
     return nullptr;

@@ -34,7 +34,7 @@ public:
   /// \p T, or the base class at its beginning, whichever LLVM lays out as
   /// \p Struct; null if neither is.
   const llvm::DICompositeType *asStruct(const llvm::DIType *T,
-                                        llvm::StructType *Struct) const;
+                                        llvm::StructType *Struct);
 
   /// The class of \p All, the types of a module, that \p Global is an object
   /// of; null if there is none.
@@ -63,14 +63,20 @@ public:
 private:
   const llvm::DIType *firstScalar(const llvm::DIType *T) const;
   const llvm::DIType *find(const llvm::Value *Pointer);
-  const llvm::DIType *ofTemporary(const llvm::AllocaInst &Local) const;
+  const llvm::DIType *ofTemporary(const llvm::AllocaInst &Local);
   const llvm::DIType *ofArgument(const llvm::Argument &Arg) const;
   const llvm::DIType *ofElement(const llvm::GEPOperator &GEP);
+  const llvm::DICompositeType *findStruct(const llvm::DIType *T,
+                                          llvm::StructType *Struct) const;
   const llvm::DIDerivedType *memberAt(const llvm::DICompositeType *Class,
                                       uint64_t Bits) const;
 
   const llvm::DataLayout &Layout;
   llvm::DenseMap<const llvm::Value *, const llvm::DIType *> Known;
+  /// Cached results of asStruct.
+  llvm::DenseMap<std::pair<const llvm::DIType *, llvm::StructType *>,
+                 const llvm::DICompositeType *>
+      Structs;
   llvm::DenseMap<const llvm::DICompositeType *, unsigned> Numbers;
   llvm::StringMap<unsigned> ByName;
   llvm::SmallVector<const llvm::DICompositeType *, 0> Classes;
