@@ -179,6 +179,17 @@ static bool endsProgram(const BasicBlock *BB) {
   return Ends;
 }
 
+/// True if the compiler knows that \p BB is never entered: the default of a
+/// switch over where a clean-up goes on, the end of a function without its
+/// `return` (at -O0 with a trap), or `__builtin_unreachable`.
+static bool isNever(const BasicBlock &BB) {
+  const Instruction *First = &*BB.getFirstNonPHIOrDbgOrLifetime();
+  if (const auto *Call = dyn_cast<IntrinsicInst>(First);
+      Call && Call->getIntrinsicID() == Intrinsic::trap)
+    First = First->getNextNode();
+  return isa<UnreachableInst>(First);
+}
+
 Flow::Flow(Function &F, UserSources &Sources, const ThrowsResult &Thrown) {
   size_t NumParts = 0;
   for (BasicBlock &BB : F) {
@@ -211,6 +222,8 @@ Flow::Flow(Function &F, UserSources &Sources, const ThrowsResult &Thrown) {
     bool Library = T->getNumSuccessors() == 2 && T->getDebugLoc() &&
                    !Sources.has(T->getDebugLoc());
     for (const BasicBlock *Succ : successors(&BB)) {
+      if (isNever(*Succ))
+        continue;
       if (Library && endsProgram(Succ) &&
           !endsProgram(T->getSuccessor(Succ == T->getSuccessor(0) ? 1 : 0)))
         continue;

@@ -30,6 +30,8 @@ using LeftInside = llvm::MapVector<const llvm::BasicBlock *,
 /// such calls inside has one node for each part. Edges that end the program
 /// (`noexcept`) are left out.
 ///
+/// Edges that are never taken, according to the compiler, are left out.
+///
 /// Checks in libraries that end the program (that a pointer is not null, that a
 /// function is set) are left out like other exceptions: a reader of the source
 /// does not see them.
