@@ -1,6 +1,7 @@
 //===- Texts.cpp - Follows a name back to its origin ----------------------===//
 #include "params/Texts.h"
 
+#include "calls/ClassHierarchy.h"
 #include "support/Names.h"
 
 #include "llvm/Analysis/ConstantFolding.h"
@@ -93,6 +94,16 @@ Texts::Known Texts::local(const Value *Object, const Instruction &At, Kind K) {
   return above(Object, At.getPrevNode(), At.getParent(), K, Seen);
 }
 
+/// What \p Call passes as \p Arg; null if that is not known: the arguments of a
+/// callback come from elsewhere.
+static const Value *passedAs(const Argument &Arg, const CallBase &Call) {
+  const bool IsOwn = Call.getCalledFunction() == Arg.getParent() ||
+                     ClassHierarchy::match(Call);
+  return IsOwn && Arg.getArgNo() < Call.arg_size()
+             ? Call.getArgOperand(Arg.getArgNo())
+             : nullptr;
+}
+
 /// What the calls of its function pass as \p Arg.
 Texts::Known Texts::ofArgument(const Argument &Arg, Kind K) {
   auto [It, New] = Arguments.try_emplace(&Arg, Known{"", false, true});
@@ -102,11 +113,8 @@ Texts::Known Texts::ofArgument(const Argument &Arg, Kind K) {
   Known All{"", false, true};
   bool Differ = false;
   for (const CallBase *Call : Calls.callers(F)) {
-    // Arguments of a callback come from elsewhere.
-    Known One =
-        Call->getCalledFunction() == F && Arg.getArgNo() < Call->arg_size()
-            ? find(Call->getArgOperand(Arg.getArgNo()), *Call, K)
-            : unknown(K);
+    const Value *Passed = passedAs(Arg, *Call);
+    Known One = Passed ? find(Passed, *Call, K) : unknown(K);
     if (One.None)
       continue;
     Differ |= !All.None && All.Text != One.Text;
@@ -324,11 +332,10 @@ const Constant *Texts::constantOf(const Value *V) {
     else if (const auto *Arg = dyn_cast<Argument>(V)) {
       // If calls pass different values, none is the default.
       for (const CallBase *Call : Calls.callers(Arg->getParent())) {
-        if (Call->getCalledFunction() != Arg->getParent() ||
-            Arg->getArgNo() >= Call->arg_size() ||
-            (Next && Next != Call->getArgOperand(Arg->getArgNo())))
+        const Value *Passed = passedAs(*Arg, *Call);
+        if (!Passed || (Next && Next != Passed))
           return nullptr;
-        Next = Call->getArgOperand(Arg->getArgNo());
+        Next = Passed;
       }
     } else if (isa<AllocaInst>(V)) {
       // A temporary that one value is stored to, or that one value is converted
