@@ -111,10 +111,10 @@ ExternCallFinder::Result ExternCallFinder::run(Module &M,
                  nullptr,
                  /*IsCall=*/true});
   });
-  const SmallSetVector<Function *, 8> Overriding =
+  const OverridingFunctions Overriding =
       overridingFunctions(M, AM.getResult<SimpleCallGraph>(M), Rules,
                           AM.getResult<OptionsAnalysis>(M));
-  for (Function *F : Overriding)
+  for (Function *F : Overriding.Functions)
     addGivenBack(*F, R);
   for (InheritedWrite &W : inheritedWrites(M, Overriding)) {
     std::string Name = qualifiedName(linkageName(*W.I->getFunction()));

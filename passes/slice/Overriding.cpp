@@ -40,9 +40,9 @@ public:
          const RuleMatches &Rules, const Options &Opts)
       : M(M), Calls(Calls), Rules(Rules), Opts(Opts), Sources(Opts) {}
 
-  /// The function that \p V shows, if it overrides one of another library; null
-  /// otherwise.
-  Function *overriding(const VirtualFunction &V);
+  /// Adds the function that \p V shows to \p Out if it overrides one of another
+  /// library.
+  void find(const VirtualFunction &V, OverridingFunctions &Out);
 
 private:
   bool isOthers(const Function &F) const;
@@ -154,33 +154,29 @@ bool Finder::overrides(const Function &F, unsigned Slot, StringRef Base,
   return Opts.SharedLibrary && Declared && !IsCalled;
 }
 
-Function *Finder::overriding(const VirtualFunction &V) {
+void Finder::find(const VirtualFunction &V, OverridingFunctions &Out) {
   Function *F = behindThunk(V.F);
   if (!F || F->isDeclaration() || !Sources.has(*F) || Rules.isOpaque(*F) ||
       F->getSubprogram()->getName().starts_with("~") || isOthers(*F))
-    return nullptr;
+    return;
   // Calls through the second base of a class enter the thunk.
   const bool IsCalled = isCalledThroughClass(*F) || isCalledThroughClass(*V.F);
-  return any_of(V.Bases,
-                [&](StringRef Base) {
-                  return overrides(*F, V.Slot, Base, IsCalled);
-                })
-             ? F
-             : nullptr;
+  for (StringRef Base : V.Bases)
+    if (overrides(*F, V.Slot, Base, IsCalled)) {
+      Out.Functions.insert(F);
+      Out.Bases.insert(className(Base));
+    }
 }
 
-SmallSetVector<Function *, 8> overridingFunctions(Module &M,
-                                                  const CallGraphResult &Calls,
-                                                  const RuleMatches &Rules,
-                                                  const Options &Opts) {
-  SmallSetVector<Function *, 8> Found;
+OverridingFunctions overridingFunctions(Module &M, const CallGraphResult &Calls,
+                                        const RuleMatches &Rules,
+                                        const Options &Opts) {
+  OverridingFunctions Found;
   if (!Rules.showsOverrides())
     return Found;
   Finder In(M, Calls, Rules, Opts);
-  ClassHierarchy(M).forEachFunction([&](const VirtualFunction &V) {
-    if (Function *F = In.overriding(V))
-      Found.insert(F);
-  });
+  ClassHierarchy(M).forEachFunction(
+      [&](const VirtualFunction &V) { In.find(V, Found); });
   return Found;
 }
 
@@ -205,14 +201,18 @@ SmallVector<const Argument *, 4> writtenArguments(const Function &F) {
 namespace {
 
 /// The classes that this unit defines: by their type information, or by a
-/// method that is not in a header.
+/// method that is not in a header. Without a virtual function that is not
+/// inline, the type information is in every unit; then a class of which this
+/// unit overrides functions of another library is no own one.
 class OwnClasses {
 public:
-  explicit OwnClasses(Module &M) {
+  OwnClasses(Module &M, const StringSet<> &Bases) {
     for (const GlobalVariable &G : M.globals())
       if (StringRef Name = G.getName();
           !G.isDeclaration() && Name.consume_front("_ZTI"))
-        Names.insert(className(Name));
+        if (std::string Class = className(Name);
+            !G.isWeakForLinker() || !Bases.contains(Class))
+          Names.insert(Class);
     for (const Function &F : definedFunctions(M))
       if (const DISubprogram *SP = F.getSubprogram();
           SP && SP->getUnit() &&
@@ -297,14 +297,14 @@ static std::string inheritedObject(const CallBase &Call, const Argument *This,
 }
 
 SmallVector<InheritedWrite, 0>
-inheritedWrites(Module &M, const SmallSetVector<Function *, 8> &Overriding) {
+inheritedWrites(Module &M, const OverridingFunctions &Overriding) {
   SmallVector<InheritedWrite, 0> Found;
   StringSet<> Derived;
-  for (const Function *F : Overriding)
+  for (const Function *F : Overriding.Functions)
     Derived.insert(OwnClasses::scopeOf(*F));
   if (Derived.empty())
     return Found;
-  const OwnClasses Own(M);
+  const OwnClasses Own(M, Overriding.Bases);
   for (Function &F : definedFunctions(M)) {
     const std::string Class = OwnClasses::scopeOf(F);
     StringRef Method = F.getSubprogram() ? F.getSubprogram()->getName() : "";

@@ -15,8 +15,15 @@
 #include "calls/SimpleCallGraph.h"
 
 #include "llvm/ADT/SetVector.h"
+#include "llvm/ADT/StringSet.h"
 
 namespace tpc {
+
+struct OverridingFunctions {
+  llvm::SmallSetVector<llvm::Function *, 8> Functions;
+  /// The classes whose functions they override, by their qualified names.
+  llvm::StringSet<> Bases;
+};
 
 /// The functions in \p M that override a virtual function of a class that
 /// another library defined, in the order of the vtables. A class is another
@@ -26,9 +33,10 @@ namespace tpc {
 ///   code;
 /// - in a shared library, if no call in it enters the function through a class.
 /// The rules name classes that do not count.
-llvm::SmallSetVector<llvm::Function *, 8>
-overridingFunctions(llvm::Module &M, const CallGraphResult &Calls,
-                    const RuleMatches &Rules, const Options &Opts);
+OverridingFunctions overridingFunctions(llvm::Module &M,
+                                        const CallGraphResult &Calls,
+                                        const RuleMatches &Rules,
+                                        const Options &Opts);
 
 /// The arguments through which \p F can write objects of its caller, and the
 /// place of its result if that is an object.
@@ -42,11 +50,10 @@ struct InheritedWrite {
   std::string Class; ///< that the part is of, without scopes
 };
 
-/// Those in the methods of the classes of \p Overriding, in the order of the
-/// module.
+/// Those in the methods of the classes with \p Overriding functions, in the
+/// order of the module.
 llvm::SmallVector<InheritedWrite, 0>
-inheritedWrites(llvm::Module &M,
-                const llvm::SmallSetVector<llvm::Function *, 8> &Overriding);
+inheritedWrites(llvm::Module &M, const OverridingFunctions &Overriding);
 
 } // namespace tpc
 
