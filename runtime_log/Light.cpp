@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sched.h>
+#include <unordered_map>
 
 namespace tpc {
 
@@ -59,8 +60,9 @@ private:
 
 /// What `light` knows about a site.
 struct LightSite {
-  explicit LightSite(Site &Of, SiteWords *Words)
-      : Of(Of), Words(Words ? Words : &Own) {
+  /// \p Module has the words of its key, if any.
+  LightSite(Site &Of, SiteWords *Module, const void *Object)
+      : Of(Of), Words(&Own), Module(Module), Object(Object) {
     clear();
     BeginSteady = Began.Steady.load(std::memory_order_relaxed);
     BeginRos = Began.Ros.load(std::memory_order_relaxed);
@@ -72,6 +74,8 @@ struct LightSite {
   /// Empties what is kept of a period.
   void clear();
   void settle();
+  /// Goes on to count in \p To, from nothing; the site is locked.
+  void countIn(SiteWords &To);
   bool isEmpty() const { return !Kept.Count && !Passed && !Unseen.load(); }
   /// One evaluation; the site is locked.
   void inspect(Thread &T, const Report &R);
@@ -85,7 +89,9 @@ struct LightSite {
 
   Site &Of;
   SiteWords Own = {};
-  std::atomic<SiteWords *> Words;
+  std::atomic<SiteWords *> Words; ///< in which it counts: Own or Module
+  SiteWords *Module; ///< of its key; making() is held while it changes
+  const void *const Object;
   std::atomic<bool> Busy{false};
   /// Evaluations that came while the site was in use.
   std::atomic<uint64_t> Unseen{0};
@@ -142,6 +148,13 @@ void LightSite::settle() {
   Passed += More;
   if (IsBlind)
     Blind += More;
+}
+
+void LightSite::countIn(SiteWords &To) {
+  settle();
+  Words.store(&To, std::memory_order_release);
+  for (int Result = 0; Result < 2; ++Result)
+    Counts[Result].set(To.Left[Result], 0);
 }
 
 /// How many evaluations to pass over until the next sample.
@@ -309,20 +322,31 @@ static std::mutex &making() {
   return *Lock;
 }
 
-static LightSite &lightOf(Site &S, const char *Key) {
+/// The sites that count in the words of their module.
+static std::unordered_map<SiteWords *, LightSite *> &owners() {
+  static auto *All = new std::unordered_map<SiteWords *, LightSite *>;
+  return *All;
+}
+
+static LightSite &lightOf(Site &S, const char *Key, const void *Object) {
   if (LightSite *L = S.Light.load(std::memory_order_acquire))
     return *L;
   std::lock_guard<std::mutex> Guard(making());
   LightSite *L = S.Light.load(std::memory_order_relaxed);
   if (!L) {
-    L = new LightSite(S, wordsOf(Key));
+    L = new LightSite(S, wordsOf(Key), Object);
+    if (L->Module && owners().try_emplace(L->Module, L).second) {
+      L->Words = L->Module;
+      L->Module->Object = Object;
+    }
     S.Light.store(L, std::memory_order_release);
   }
   return *L;
 }
 
-void light(Thread &T, Site &S, const Report &R) {
-  LightSite &L = lightOf(S, R.Key);
+void light(Thread &T, Site &S, const Report &R, const char *Key,
+           const void *Object) {
+  LightSite &L = lightOf(S, Key, Object);
   if (!L.lock()) {
     L.Unseen.fetch_add(1, std::memory_order_relaxed);
     return;
@@ -383,6 +407,30 @@ static void reopen(LightSite &L, uint64_t Count) {
   L.Next = LightSite::Usual;
 }
 
+/// Hands the words of a module to \p L if it was evaluated far more often in
+/// the last period than the object that has them.
+static void handWordsTo(LightSite &L) {
+  constexpr uint64_t Hot = 10000, Margin = 2;
+  if (L.Before < Hot || L.Words.load() != &L.Own)
+    return;
+  std::lock_guard<std::mutex> Guard(making());
+  auto Owner = L.Module ? owners().find(L.Module) : owners().end();
+  if (Owner == owners().end() || L.Before < Owner->second->Before * Margin)
+    return;
+  LightSite &Now = *Owner->second;
+  // If one of them is in use, it is hot in the next period as well.
+  if (!Now.lock())
+    return;
+  Unlocker First{Now};
+  if (!L.lock())
+    return;
+  Unlocker Second{L};
+  Now.countIn(Now.Own);
+  L.Module->Object = L.Object;
+  L.countIn(*L.Module);
+  Owner->second = &L;
+}
+
 uint64_t flushLight(Sink &To, bool IsEnd) {
   int64_t Steady = Clock::now(), Ros = rosTime();
   uint64_t Sent = 0;
@@ -417,6 +465,7 @@ uint64_t flushLight(Sink &To, bool IsEnd) {
     To.take(S);
     ++Sent;
   });
+  forEachLight(handWordsTo);
   Began.Steady = Steady;
   Began.Ros = Ros;
   return Sent;
@@ -489,16 +538,15 @@ void tpc_forget_sites(SiteWords *First) {
   if (!TheSites)
     return;
   forEachLight([&](LightSite &L) {
-    SiteWords *At = L.Words.load();
-    if (At < First || At >= End)
+    if (L.Module < First || L.Module >= End)
       return;
+    owners().erase(L.Module);
     // The helper thread holds the lock for a moment only.
     while (!L.lock())
       sched_yield();
     Unlocker Guard{L};
-    L.settle();
-    L.Words = &L.Own;
-    for (int Result = 0; Result < 2; ++Result)
-      L.Counts[Result].set(L.Own.Left[Result], 0);
+    if (L.Words.load() != &L.Own)
+      L.countIn(L.Own);
+    L.Module = nullptr;
   });
 }

@@ -19,8 +19,10 @@
 
 namespace tpc {
 
-/// Records one evaluation.
-void light(Thread &T, Site &S, const Report &R);
+/// Records one evaluation, of \p Object if that is not null. \p Key is the key
+/// that the instrumented code passed.
+void light(Thread &T, Site &S, const Report &R, const char *Key,
+           const void *Object);
 
 /// Whether the evaluation needs only to be counted, and has been. For callers
 /// of log_one that do not look at SiteWords themselves.

@@ -49,12 +49,13 @@ static void report(Thread &T, Report R, const void *Object) {
   Site *S = M == Mode::Off ? nullptr : sites().find(R.Key, Object);
   if (!S)
     return;
+  const char *Key = R.Key;
   if (S->Key.size() != S->Length)
     R.Key = S->Key.c_str();
   if (M == Mode::Edges)
     edges(T, *S, R);
   else if (M == Mode::Light)
-    light(T, *S, R);
+    light(T, *S, R, Key, Object);
   else if (M == Mode::Capped)
     capped(T, *S, R);
   else

@@ -4,7 +4,9 @@
 // line of its own, and passes the address of Key to log_one. While the policy
 // is `light`, the module's code calls log_one only if Left[outcome] is 0. If it
 // is positive, the code decrements it instead; if negative, it does nothing.
-// The words do not know objects: a comparison that calls log_one_of has none.
+// A comparison that calls log_one_of does so only for the object Object: the
+// words belong to one object at a time, and each evaluation of the others is a
+// call.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_SITEWORDS_H
@@ -18,9 +20,11 @@ namespace tpc {
 
 struct alignas(64) SiteWords {
   std::atomic<int32_t> Left[2];
-  char Key[56];
+  std::atomic<const void *> Object;
+  char Key[56 - sizeof(void *)];
 };
-static_assert(sizeof(SiteWords) == 64 && offsetof(SiteWords, Key) == 8);
+static_assert(sizeof(SiteWords) == 64 && offsetof(SiteWords, Object) == 8 &&
+              offsetof(SiteWords, Key) == 8 + sizeof(void *));
 
 /// The values of tpc_reporting.
 enum Reporting : char {

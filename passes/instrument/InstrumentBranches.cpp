@@ -12,6 +12,7 @@
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/Verifier.h"
 #include "llvm/Support/raw_ostream.h"
+#include "llvm/Transforms/Utils/ModuleUtils.h"
 
 using namespace llvm;
 
@@ -240,11 +241,104 @@ static GlobalVariable *wantedFlag(Module &M) {
                             "tpc_reporting");
 }
 
+namespace {
+
+/// The words of a module, which it shares with the log library: one for each
+/// comparison, in a cache line of its own. runtime_log/SiteWords.h has the same
+/// layout: how many evaluations with either outcome need no call, the object
+/// that this holds for, and the key.
+class SiteTable {
+public:
+  static constexpr unsigned Bytes = 64, ObjectAt = 8;
+
+  SiteTable(Module &M, ArrayRef<Report> Reports) : M(M) {
+    LLVMContext &Ctx = M.getContext();
+    auto *Pointer = PointerType::getUnqual(Ctx);
+    KeyAt = ObjectAt + M.getDataLayout().getPointerSize();
+    auto *Left = ArrayType::get(Type::getInt32Ty(Ctx), 2);
+    auto *Key = ArrayType::get(Type::getInt8Ty(Ctx), Bytes - KeyAt);
+    auto *Words = StructType::get(Ctx, {Left, Pointer, Key}, /*isPacked=*/true);
+    SmallVector<Constant *, 0> All;
+    for (const Report &R : Reports) {
+      auto [It, New] = Numbers.try_emplace(nameOf(R), All.size());
+      if (!New)
+        continue;
+      std::string Text = R.Key.substr(0, Bytes - KeyAt - 1);
+      Text.resize(Bytes - KeyAt);
+      All.push_back(ConstantStruct::get(
+          Words, {Constant::getNullValue(Left), Constant::getNullValue(Pointer),
+                  ConstantDataArray::getString(Ctx, Text, /*AddNull=*/false)}));
+    }
+    auto *T = ArrayType::get(Words, All.size());
+    Table = new GlobalVariable(M, T, /*isConstant=*/false,
+                               GlobalValue::InternalLinkage,
+                               ConstantArray::get(T, All), "tpc.sites");
+    Table->setAlignment(Align(Bytes));
+  }
+
+  /// The address of the key of \p R.
+  Constant *keyOf(const Report &R) const {
+    LLVMContext &Ctx = M.getContext();
+    return ConstantExpr::getInBoundsGetElementPtr(
+        Type::getInt8Ty(Ctx), Table,
+        ConstantInt::get(Type::getInt64Ty(Ctx),
+                         Numbers.lookup(nameOf(R)) * Bytes + KeyAt));
+  }
+  unsigned keyAt() const { return KeyAt; }
+
+  /// Tells the log library of the words while the module is loaded.
+  void announce() {
+    call("tpc_register_sites", "tpc.register", appendToGlobalCtors);
+    call("tpc_forget_sites", "tpc.forget", appendToGlobalDtors);
+  }
+  void erase() { Table->eraseFromParent(); }
+
+private:
+  /// The words of a comparison that passes an object are not those of one
+  /// without.
+  static std::string nameOf(const Report &R) {
+    return (R.Object ? "o" : "k") + R.Key;
+  }
+
+  void call(StringRef Callee, StringRef Name,
+            void (*Append)(Module &, Function *, int, Constant *)) {
+    LLVMContext &Ctx = M.getContext();
+    auto *Void = Type::getVoidTy(Ctx);
+    FunctionCallee To = M.getOrInsertFunction(
+        Callee, Void, PointerType::getUnqual(Ctx), Type::getInt64Ty(Ctx));
+    if (auto *F = dyn_cast<Function>(To.getCallee()); F && F->isDeclaration())
+      F->setLinkage(GlobalValue::ExternalWeakLinkage);
+    auto *F = Function::Create(FunctionType::get(Void, false),
+                               GlobalValue::InternalLinkage, Name, M);
+    auto *Is = BasicBlock::Create(Ctx, "", F);
+    auto *Tell = BasicBlock::Create(Ctx, "", F);
+    auto *Done = BasicBlock::Create(Ctx, "", F);
+    IRBuilder<> B(Is);
+    B.CreateCondBr(B.CreateIsNull(To.getCallee()), Done, Tell);
+    B.SetInsertPoint(Tell);
+    B.CreateCall(To, {Table, B.getInt64(Numbers.size())});
+    B.CreateBr(Done);
+    B.SetInsertPoint(Done);
+    B.CreateRetVoid();
+    // Before the program's own constructors, which may evaluate comparisons.
+    constexpr int First = 101;
+    Append(M, F, First, nullptr);
+  }
+
+  Module &M;
+  GlobalVariable *Table;
+  StringMap<unsigned> Numbers;
+  unsigned KeyAt;
+};
+
+} // namespace
+
 /// `if (tpc_reporting) log_one(...)` as a function that the optimiser inlines:
 /// a program whose reports are off pays for one branch. If \p Log is
-/// log_one_of, and is not there, \p Plain gets the report.
+/// log_one_of, and is not there, \p Plain gets the report. While only some
+/// evaluations are inspected, the others are counted in the words of \p Sites.
 static Function *reportFunction(Module &M, FunctionCallee Log,
-                                FunctionCallee Plain) {
+                                FunctionCallee Plain, const SiteTable &Sites) {
   LLVMContext &Ctx = M.getContext();
   bool HasObject = Log.getCallee() != Plain.getCallee();
   auto *F =
@@ -266,7 +360,41 @@ static Function *reportFunction(Module &M, FunctionCallee Log,
   // It may change at any time.
   LoadInst *Now = B.CreateAlignedLoad(B.getInt8Ty(), Wanted, Align(1));
   Now->setAtomic(AtomicOrdering::Monotonic);
-  B.CreateCondBr(B.CreateIsNull(Now), Done, Report);
+  auto *Some = BasicBlock::Create(Ctx, "", F, Report);
+  auto *Count = BasicBlock::Create(Ctx, "", F, Report);
+  auto *Pass = BasicBlock::Create(Ctx, "", F, Report);
+  B.CreateCondBr(B.CreateIsNull(Now), Done, Some);
+  B.SetInsertPoint(Some);
+  constexpr char ReportFew = 2;
+  Value *IsFew = B.CreateICmpEQ(Now, B.getInt8(ReportFew));
+  auto At = [&](int64_t Offset) {
+    return B.CreatePtrAdd(F->getArg(0), B.getInt64(Offset));
+  };
+  auto Load = [&](Type *T, Value *From) {
+    LoadInst *L = B.CreateLoad(T, From);
+    L->setAtomic(AtomicOrdering::Monotonic);
+    return L;
+  };
+  const int64_t Begin = -static_cast<int64_t>(Sites.keyAt());
+  if (HasObject) {
+    auto *Own = BasicBlock::Create(Ctx, "", F, Count);
+    B.CreateCondBr(IsFew, Own, Report);
+    B.SetInsertPoint(Own);
+    Value *Of = Load(B.getPtrTy(), At(Begin + SiteTable::ObjectAt));
+    B.CreateCondBr(B.CreateICmpEQ(Of, F->getArg(5)), Count, Report);
+  } else {
+    B.CreateCondBr(IsFew, Count, Report);
+  }
+  B.SetInsertPoint(Count);
+  Value *Left = B.CreateSelect(F->getArg(1), At(Begin + 4), At(Begin));
+  Value *Number = Load(B.getInt32Ty(), Left);
+  B.CreateCondBr(B.CreateIsNull(Number), Report, Pass);
+  B.SetInsertPoint(Pass);
+  Value *IsCounted = B.CreateICmpSGT(Number, B.getInt32(0));
+  StoreInst *Store = B.CreateStore(
+      B.CreateSub(Number, B.CreateZExt(IsCounted, B.getInt32Ty())), Left);
+  Store->setAtomic(AtomicOrdering::Monotonic);
+  B.CreateBr(Done);
   SmallVector<Value *, 6> Arguments;
   for (Argument &A : F->args())
     Arguments.push_back(&A);
@@ -302,11 +430,12 @@ std::string insertReports(Module &M, ArrayRef<Report> Reports) {
                            M.getFunction(LogOfName) != nullptr};
   bool WasWanted = M.getNamedGlobal("tpc_reporting");
   FunctionCallee Log = logFunction(M, /*HasObject=*/false);
-  Function *ReportTo = reportFunction(M, Log, Log), *ReportOf = nullptr;
+  SiteTable Sites(M, Reports);
+  Function *ReportTo = reportFunction(M, Log, Log, Sites), *ReportOf = nullptr;
   if (any_of(Reports, [](const Report &R) { return R.Object; }))
-    ReportOf = reportFunction(M, logFunction(M, /*HasObject=*/true), Log);
+    ReportOf =
+        reportFunction(M, logFunction(M, /*HasObject=*/true), Log, Sites);
   SmallVector<Instruction *, 0> Inserted;
-  StringMap<GlobalVariable *> Keys;
   Instruction *Above = nullptr, *Before = nullptr;
   auto Collect = [&] {
     for (Instruction *I = Before ? Before->getPrevNode() : nullptr; I != Above;
@@ -317,13 +446,6 @@ std::string insertReports(Module &M, ArrayRef<Report> Reports) {
   auto Insert = [&](const Report &R) {
     assert(R.Before && R.Result && R.Compared && R.Threshold &&
            "a report without a place or a value");
-    GlobalVariable *&Key = Keys[R.Key];
-    if (!Key) {
-      Constant *Text = ConstantDataArray::getString(M.getContext(), R.Key);
-      Key = new GlobalVariable(M, Text->getType(), /*isConstant=*/true,
-                               GlobalValue::PrivateLinkage, Text, "tpc.key");
-      Key->setUnnamedAddr(GlobalValue::UnnamedAddr::Global);
-    }
     Value *Compared = R.Compared, *Threshold = R.Threshold;
     if (R.Held) {
       // Behind the call, the objects may be gone.
@@ -341,7 +463,7 @@ std::string insertReports(Module &M, ArrayRef<Report> Reports) {
     Value *Result = R.Switch ? takesCase(B, *R.Switch) : toBool(B, R.Result);
     Value *Outcome = R.Outcome == R.Result ? Result : toBool(B, R.Outcome);
     SmallVector<Value *, 6> Arguments{
-        Key, Result, toDouble(B, Compared, R.Signed),
+        Sites.keyOf(R), Result, toDouble(B, Compared, R.Signed),
         toDouble(B, Threshold, R.Signed), Outcome};
     if (R.Object)
       Arguments.push_back(R.Object);
@@ -352,6 +474,7 @@ std::string insertReports(Module &M, ArrayRef<Report> Reports) {
   raw_string_ostream OS(Why);
   if (runGuarded([&] { for_each(Reports, Insert); })) {
     if (!verifyModule(M, &OS)) {
+      Sites.announce();
       NumReports += Reports.size();
       return "";
     }
@@ -365,11 +488,10 @@ std::string insertReports(Module &M, ArrayRef<Report> Reports) {
     I->dropAllReferences();
   for (Instruction *I : Inserted)
     I->eraseFromParent();
-  for (auto &[Text, Key] : Keys)
-    Key->eraseFromParent();
   ReportTo->eraseFromParent();
   if (ReportOf)
     ReportOf->eraseFromParent();
+  Sites.erase();
   if (GlobalVariable *Wanted = M.getNamedGlobal("tpc_reporting");
       Wanted && !WasWanted)
     Wanted->eraseFromParent();

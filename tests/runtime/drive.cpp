@@ -27,6 +27,16 @@
 #include <unistd.h>
 #include <vector>
 
+extern char tpc_reporting;
+/// What an instrumented module has for a comparison (SiteWords.h).
+struct alignas(64) WordsOfModule {
+  std::atomic<int32_t> Left[2];
+  std::atomic<const void *> Object;
+  char Key[48];
+};
+extern "C" void tpc_register_sites(WordsOfModule *First, uint64_t Count);
+extern "C" void tpc_forget_sites(WordsOfModule *First);
+
 namespace {
 
 using Arguments = std::vector<std::string>;
@@ -329,8 +339,8 @@ int edges(const Arguments &A) {
   return 0;
 }
 
-/// hot REPORTS EVERY SITES_MS: one site, as fast as it goes; the outcome changes
-/// after each EVERY reports (0: never); then waits.
+/// hot REPORTS EVERY SITES_MS: one site, as fast as it goes; the outcome
+/// changes after each EVERY reports (0: never); then waits.
 int hot(const Arguments &A) {
   uint64_t Reports = std::stoull(A[0]), Every = std::stoull(A[1]);
   Keys K(1);
@@ -399,19 +409,67 @@ int names(const Arguments &) {
   return 0;
 }
 
+WordsOfModule InPlace;
+uint64_t Called;
+
+/// What an instrumented module does instead of a call.
+void evaluateInPlace(bool Result, const void *Object) {
+  if (tpc_reporting == 2 && InPlace.Object == Object) {
+    int32_t Left = InPlace.Left[Result];
+    if (Left) {
+      InPlace.Left[Result] = Left - (Left > 0);
+      return;
+    }
+  }
+  ++Called;
+  log_one_of(InPlace.Key, Result, Result, 0.5, Result, Object);
+}
+
+/// in-place TURNS: a first object evaluates once in a while, a second one in a
+/// hot loop. Prints how many evaluations were calls after the first fifth.
+int inPlace(const Arguments &A) {
+  uint64_t Turns = std::stoull(A[0]);
+  std::strcpy(InPlace.Key, keyOf(0).c_str());
+  tpc_register_sites(&InPlace, 1);
+  int First, Second;
+  for (uint64_t Turn = 0; Turn < Turns; ++Turn) {
+    if (Turn == Turns / 5)
+      Called = 0;
+    if (Turn % 1000 == 0)
+      evaluateInPlace(false, &First);
+    evaluateInPlace(true, &Second);
+    if (Turn % (Turns / 50) == 0)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  std::printf("%llu\n", static_cast<unsigned long long>(Called));
+  tpc_forget_sites(&InPlace);
+  // After that the words are not read any more.
+  std::memset(static_cast<void *>(&InPlace), 0xff, sizeof(InPlace));
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  return 0;
+}
+
 } // namespace
 
 int main(int Count, char **Words) {
   const std::map<std::string, std::function<int(const Arguments &)>> Known = {
-      {"threads", threads},    {"counted", counted},
-      {"forked", forked},      {"ends", ends},
-      {"signals", signals},    {"paced", paced},
-      {"edges", edges},        {"odd", odd},
-      {"hot", hot},            {"objects", objects},
+      {"threads", threads},
+      {"counted", counted},
+      {"forked", forked},
+      {"ends", ends},
+      {"signals", signals},
+      {"paced", paced},
+      {"edges", edges},
+      {"odd", odd},
+      {"hot", hot},
+      {"objects", objects},
       {"objects-threads", objectsOfThreads},
-      {"names", names},        {"closed", closed},
+      {"in-place", inPlace},
+      {"names", names},
+      {"closed", closed},
       {"cancelled", cancelled},
-      {"exits", exits},        {"together", together}};
+      {"exits", exits},
+      {"together", together}};
   auto Found = Count > 1 ? Known.find(Words[1]) : Known.end();
   if (Found == Known.end())
     return 2;

@@ -77,3 +77,16 @@ def test_ten_thousand_objects_are_harmless(drive, files, policy):
     assert counts.keys() == keys
     assert counts.total() == 10_000 * 20 + 1
     assert counts[f"{key(0)}#0"] == (10_000 - MOST) * 20
+
+
+# The words in which instrumented code counts go to the object of the hot loop. Each evaluation
+# before is a call; afterwards nearly none is. All are counted, also those between the last call and
+# the unloading of the module.
+def test_the_hot_object_is_counted_in_place(drive, files):
+    turns = 1_000_000
+    ran = drive("in-place", turns, **LIGHT)
+    assert (ran.returncode, ran.stderr) == (0, "")
+    assert int(ran.stdout) < turns / 50
+    file = log_file.read(files()[0])
+    counts = {name: count for name, (count, _) in totals(file).items()}
+    assert counts == {key(0): turns // 1000, f"{key(0)}#2": turns}
