@@ -124,6 +124,11 @@ class _Commands(click.Group):
         except KeyboardInterrupt:
             click.echo("pytpc: interrupted", err=True)
             ctx.exit(INTERRUPTED)
+        except MemoryError:
+            click.echo(
+                "pytpc: error: out of memory; end other programs, or give less at once", err=True
+            )
+            ctx.exit(1)
         except BrokenPipeError:
             raise
         except OSError as error:

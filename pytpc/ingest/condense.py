@@ -138,7 +138,11 @@ class Condenser:
         """The beginnings of periods, and for each of the sorted rows the number of its period."""
         first, last = int(time_ns.min()), int(time_ns.max())
         step = self._period_ns
-        grid = np.arange(first // step * step, last + 1, step, dtype=np.int64)
+        if (last - first) // step < time_ns.size:
+            grid = np.arange(first // step * step, last + 1, step, dtype=np.int64)
+        else:
+            # The clock was set within the block: most periods in between have no report.
+            grid = np.unique(time_ns // step) * step
         # A cut before this block may be in the same period.
         within = self._cuts[(self._cuts > grid[0]) & (self._cuts <= last)]
         bounds = np.union1d(grid, within)

@@ -118,6 +118,11 @@ def test_build_shows_the_tail_and_then_one_line(
             "pytpc: error: /x: Permission denied\n",
         ),
         (KeyboardInterrupt(), 130, "pytpc: interrupted\n"),
+        (
+            MemoryError(),
+            1,
+            "pytpc: error: out of memory; end other programs, or give less at once\n",
+        ),
     ],
 )
 def test_any_error_of_any_command_is_one_line(

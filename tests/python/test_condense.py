@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tpc_file import FULL, TpcFile, header, report, site, sync
+from tpc_file import FULL, TpcFile, header, report, simulated, site, sync
 
 from pytpc.diagnosis.scores.scores import type1
 from pytpc.diagnosis.scores.summary_scores import LogTables, type2_of_summaries
@@ -139,3 +139,16 @@ def test_a_window_ends_between_two_groups_of_chunks(tmp_path: Path) -> None:
     assert rows.begin_ns.tolist() == [0, 900 * 30_001]
     assert rows.end_ns.tolist() == [900 * 30_000, 900 * 99_999]
     assert rows.count.tolist() == [30_001, 69_999]
+
+
+def test_a_clock_that_is_set_within_a_block(tmp_path: Path) -> None:
+    # The clock of the machine is 50 years fast for the first two reports: 1.6 * 10**10 periods.
+    far = 50 * 365 * 24 * 3600 * SECOND
+    file = TpcFile(header(real=0))
+    file.system(sync(0, 0), site(1, HOT))
+    file.thread(1, *(report(1, 10**6 * n, 1.0, 2.0) for n in range(2)))
+    file.thread(1, simulated(3 * 10**6, far), *(report(1, 4 * 10**6, 1.0, 2.0) for _ in range(3)))
+    rows = read_with_room(file.write(tmp_path / "a.tpc"), 1).summaries
+    assert rows.begin_ns.tolist() == [0, far]
+    assert rows.end_ns.tolist() == [10**6, far]
+    assert rows.count.tolist() == [2, 3]
