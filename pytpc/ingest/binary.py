@@ -102,7 +102,7 @@ class _TpcReader:
         self._read_system()
         self._clock = Clock.of([(self.header.steady_ns, self.header.real_ns), *self._system.syncs])
         self._key_of_site = self._system.key_codes(self._gathering)
-        if not self._gathering.has_room(self._file.count * layout.RECORDS_OF_CHUNK):
+        if threads and not self._gathering.has_room(self._file.count * layout.RECORDS_OF_CHUNK):
             self._condenser = self._made_condenser(threads)
         yield from self._merged(threads)
 

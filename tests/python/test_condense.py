@@ -152,3 +152,11 @@ def test_a_clock_that_is_set_within_a_block(tmp_path: Path) -> None:
     assert rows.begin_ns.tolist() == [0, far]
     assert rows.end_ns.tolist() == [10**6, far]
     assert rows.count.tolist() == [2, 3]
+
+
+def test_a_file_without_reports_behind_a_full_mission(tmp_path: Path) -> None:
+    write(tmp_path / "a.tpc", [report(1, at, 1.0, 2.0) for at in range(5)], [])
+    empty = TpcFile(header(node="/other", pid=78))
+    empty.system(sync(0, 0), site(1, HOT))
+    empty.write(tmp_path / "b.tpc")
+    assert len(read_with_room(tmp_path, 0).events) == 1
