@@ -131,7 +131,8 @@ def gather(
             seen.add(real)
             reader = reader_of(source)
             gathering.marks += _beside(source)
-            if source.suffix == ".tpc" and not gathering.has_room(source.stat().st_size // 32):
+            is_binary = reader.__name__ == _BY_MAGIC[TPC_MAGIC][1]
+            if is_binary and not gathering.has_room(source.stat().st_size // 32):
                 # It is condensed, which needs the marks of all others.
                 last.append((reader, source))
             else:

@@ -160,3 +160,15 @@ def test_a_file_without_reports_behind_a_full_mission(tmp_path: Path) -> None:
     empty.system(sync(0, 0), site(1, HOT))
     empty.write(tmp_path / "b.tpc")
     assert len(read_with_room(tmp_path, 0).events) == 1
+
+
+def test_a_binary_file_of_any_name_waits_for_the_marks(tmp_path: Path) -> None:
+    # 0.01 s and 0.02 s are on both sides of the mark at 0.015 s, which is in another file.
+    reports = [report(1, at * 10**7, 1.0, 2.0) for at in (1, 2, 3)]
+    file = write(tmp_path / "a.log", reports, [])
+    marks = tmp_path / "b.csv"
+    write_marks([Mark(15 * 10**6, "II")], marks)
+    gathering = Gathering(most_rows=0)
+    gather([file, marks], gathering)
+    found = Merged(gathering, "mission").recording()
+    assert found.summaries.begin_ns.tolist() == [10**7, 2 * 10**7]
