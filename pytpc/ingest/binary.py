@@ -288,7 +288,8 @@ class _TpcReader:
         """Condenses the comparisons that have most reports."""
         sites, times = self._file.some_sites(threads)
         keys = self._key_of_site.take(sites, mode="clip")
-        first = min(thread.first_steady for thread in threads)
+        # A thread whose first record was not written begins at 0.
+        first = min((t.first_steady for t in threads if t.first_steady > 0), default=0)
         return Condenser(
             self._gathering,
             self._channel,

@@ -192,7 +192,8 @@ class Columns:
 class ThreadChunks:
     """The chunks of one thread, in the order of the file, and how far they were read.
 
-    ``first_steady`` and ``last_steady`` are the times of the first record in its first and last.
+    ``first_steady`` is the time of the first record in its first chunk, ``last_steady`` the latest
+    of those in all of them.
     """
 
     number: int
@@ -327,7 +328,8 @@ def _add_chunks(threads: dict[int, ThreadChunks], heads: npt.NDArray[np.void], p
             threads[number] = thread
         thread.chunks += (place + rows * layout.CHUNK_BYTES).tolist()
         thread.firsts += own["first"].tolist()
-        thread.last_steady = int(own["steady"][-1])
+        # The last chunk of a process that was killed may have no record yet.
+        thread.last_steady = max(thread.last_steady, int(own["steady"].max()))
 
 
 def _data_after(descriptor: int, place: int) -> int | None:

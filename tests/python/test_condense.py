@@ -172,3 +172,18 @@ def test_a_binary_file_of_any_name_waits_for_the_marks(tmp_path: Path) -> None:
     gather([file, marks], gathering)
     found = Merged(gathering, "mission").recording()
     assert found.summaries.begin_ns.tolist() == [10**7, 2 * 10**7]
+
+
+def test_the_periods_of_a_process_that_was_killed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Two summaries have room: of 2 s each, as the process has reported for 4 s. The last chunk
+    # was begun, and has no record.
+    monkeypatch.setattr(condense, "_MOST_SUMMARIES", 2)
+    file = TpcFile(header(real=0))
+    file.system(sync(0, 0), site(1, HOT))
+    file.thread(1, *(report(1, at * SECOND, 1.0, 2.0) for at in (10, 11)))
+    file.thread(1, *(report(1, at * SECOND, 1.0, 2.0) for at in (14, 15)))
+    file.thread(1)
+    rows = read_with_room(file.write(tmp_path / "a.tpc"), 1).summaries
+    assert rows.count.tolist() == [2, 2]
