@@ -216,3 +216,30 @@ def test_every_parameter_has_a_state(tmp_path: Path) -> None:
         "~ignored": "used",
         "~handed": "lost",
     }
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        'p + "/base"',
+        '"/" + p',
+        '"%s" % p',
+        'p % (m.x, "a")',
+        'f"{m.frame}/" + p',
+        "p + SUFFIX",
+        "[0] * p",
+        "(m.x,) * p",
+    ],
+)
+def test_what_is_computed_with_text_or_a_list_is_no_threshold(value: str, tmp_path: Path) -> None:
+    body = f"""
+        p = rospy.get_param("~p")
+        SUFFIX = "/base"
+        def heard(m):
+            if m.data == {value}:
+                pub.publish(1)
+        rospy.Subscriber("in", object, heard)
+    """
+    unit = analysed(body, tmp_path)
+    assert unit.comparisons == ()
+    assert [spot.kind for spot in unit.blind_spots] == ["lost_value"]

@@ -174,11 +174,18 @@ class Follower:
         number = self.constants.number(other)
         if number is not None:
             how = by_operator(fact.how, str(user.data), number, other is left)
-        elif fact.read.type == "string":
+        elif fact.read.type == "string" or self._is_no_number(other):
             how = None
         else:
             how = fact.how.mixed(str(user.data), other, other is left)
         self._arithmetic(fact, user, how)
+
+    def _is_no_number(self, value: Instr) -> bool:
+        """True for text, and for what is built on the spot: a list, a tuple, a dict."""
+        if value.op == "build":
+            return True
+        values = self.constants.values(value)
+        return bool(values) and all(isinstance(each, str) for each in values)
 
     def same(self, one: Instr, other: Instr) -> bool:
         """True where two instructions read the same variable, with nothing stored in between."""
