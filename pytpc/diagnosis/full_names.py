@@ -26,6 +26,7 @@ from pytpc.static.parameters import (
     DYNAMIC,
     INSTANCE,
     base_key,
+    instance_number,
     of_instance,
     resolved,
     same_parameter,
@@ -96,9 +97,10 @@ class _Names:
         found = defaultdict(set)
         for table in (self.recording.events, self.recording.summaries):
             for key in table.keys:
-                if INSTANCE in key:
-                    found[base_key(key)].add(key)
-        return {key: tuple(sorted(keys, key=_number)) for key, keys in found.items()}
+                number = instance_number(key)
+                if number is not None:
+                    found[base_key(key)].add((number, key))
+        return {base: tuple(key for _, key in sorted(keys)) for base, keys in found.items()}
 
     def said_of(self, key: str, reads: Iterable[str | None]) -> frozenset[tuple[str, str]]:
         """The nodes and full names that were reported for these reads, in the objects of ``key``.
@@ -182,10 +184,6 @@ class _Names:
         return any(same_parameter(name, source) for name in self.values)
 
 
-def _number(key: str) -> int:
-    return int(key.partition(INSTANCE)[2])
-
-
 def _gives(comparison: Comparison, value: object, thresholds: Iterable[float]) -> bool:
     """Whether the value of a parameter is one of these thresholds."""
     if not isinstance(value, bool | int | float):
@@ -232,7 +230,8 @@ def with_keys_of(reference: Recording, static_info: StaticInfo, named: StaticInf
         named: the same with the names of the mission, from ``with_full_names``.
     """
     there = with_full_names(static_info, reference, {})
-    bases = {base_key(key) for key in (*named.comparisons, *there.comparisons) if INSTANCE in key}
+    every = (*named.comparisons, *there.comparisons)
+    bases = {base_key(key) for key in every if instance_number(key) is not None}
     keys: dict[str, str] = {}
     for base in sorted(bases):
         here, own = (_sources(static, base) for static in (named, there))
@@ -275,7 +274,7 @@ def _without_aliases(comparisons: list[Comparison], names: _Names) -> list[Compa
     for one in comparisons:
         if one.type != "constant":
             place = one.file, one.lineno, one.column, one.function, one.relation
-            together[place, one.key.partition(INSTANCE)[2]].append(one)
+            together[place, instance_number(one.key)].append(one)
     left_out = set()
     for alike in together.values():
         unset = [one.key for one in alike if not names.is_set(one)]

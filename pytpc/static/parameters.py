@@ -12,12 +12,23 @@ DYNAMIC = "<dynamic>"
 INSTANCE = "#"
 """Stands between a key and the number of an instance: one of several objects of a class."""
 
+_NUMBER = re.compile(rf"{INSTANCE}([0-9]{{1,9}})\Z")
 _OBJECT = re.compile(r" \((?:object [0-9]+|further objects)\)$")
 
 
 def base_key(key: str) -> str:
     """The key of a comparison in the source, whichever object evaluated it."""
-    return key.partition(INSTANCE)[0]
+    return _NUMBER.sub("", key)
+
+
+def instance_number(key: str) -> int | None:
+    """The number of the instance with this key; None for the key of the source.
+
+    >>> instance_number("6f1e#2"), instance_number("6f1e"), instance_number("6f1e#b")
+    (2, None, None)
+    """
+    found = _NUMBER.search(key)
+    return int(found[1]) if found else None
 
 
 def of_instance(source: str, key: str) -> str:
@@ -26,10 +37,10 @@ def of_instance(source: str, key: str) -> str:
     >>> of_instance("<dynamic>/radius", "6f1e#2"), of_instance("~radius", "6f1e#2")
     ('<dynamic>/radius (object 2)', '~radius')
     """
-    number = key.partition(INSTANCE)[2]
-    if not number or DYNAMIC not in source:
+    number = instance_number(key)
+    if number is None or DYNAMIC not in source:
         return source
-    which = f"object {number}" if number != "0" else "further objects"
+    which = f"object {number}" if number else "further objects"
     return f"{_OBJECT.sub('', source)} ({which})"
 
 

@@ -150,6 +150,13 @@ def test_two_objects_without_names_have_numbers():
 
 # In the good run the global object compared first, so the keys are the other way round, and a third
 # object has the number that is free in the mission.
+@pytest.mark.parametrize("end", ["#b", "#", "#2#", "# 2", "#-1", "#1.5"])
+def test_a_key_of_another_form_is_no_instance(end):
+    given = static(comparison(1, "<dynamic>/radius"), reads=[read_at(3, "<dynamic>/radius")])
+    told = replace(mission([]), events=rows_of(key(1), f"{key(1)}{end}"))
+    assert with_full_names(given, told, {}) is given
+
+
 def test_the_objects_of_a_good_run_get_the_keys_of_the_mission():
     given = static(comparison(1, "<dynamic>/radius"), reads=[read_at(3, "<dynamic>/radius")])
     read = (
