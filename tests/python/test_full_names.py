@@ -13,6 +13,7 @@ from tpc_file import TpcFile, header, name, report, site
 
 from pytpc.cli.main import main
 from pytpc.diagnosis.full_names import with_full_names, with_keys_of
+from pytpc.diagnosis.thresholds.units import read_type
 from pytpc.ingest.reading import read
 from pytpc.recording.events import Events
 from pytpc.recording.faults import unknown_keys
@@ -142,6 +143,7 @@ def test_two_objects_without_names_have_numbers():
         instance(2, 2): "~patience",
         key(3): "<dynamic>/tolerance",
     }
+    assert read_type(found[instance(1, 2)], given.units[0]) == "double"
     again = with_full_names(with_full_names(given, told, {}), told, {}).comparisons
     assert again == found
     assert same_parameter("radius", "<dynamic>/radius (object 2)")
@@ -150,6 +152,20 @@ def test_two_objects_without_names_have_numbers():
 
 # In the good run the global object compared first, so the keys are the other way round, and a third
 # object has the number that is free in the mission.
+# Only of object 7 it is known which name it has read; the read has that name then.
+@pytest.mark.parametrize("source", ["<dynamic>/radius", "<dynamic>"])
+def test_the_type_of_a_read_is_found_under_any_name(source):
+    given = static(comparison(1, source), reads=[read_at(3, source)])
+    names = [ReadName(key(90), NODE, name) for name in (LOCAL, GLOBAL)]
+    told = replace(
+        mission([], [*names, ReadName(key(90), NODE, LOCAL, 7), ReadName(key(1), NODE, "", 7)]),
+        events=rows_of(key(1), instance(1, 2)),
+    )
+    (unit,) = with_full_names(given, told, {}).units
+    assert [one.source for one in unit.comparisons] == [LOCAL, f"{source} (object 2)"]
+    assert [read_type(one, unit) for one in unit.comparisons] == ["double", "double"]
+
+
 @pytest.mark.parametrize("end", ["#b", "#", "#2#", "# 2", "#-1", "#1.5"])
 def test_a_key_of_another_form_is_no_instance(end):
     given = static(comparison(1, "<dynamic>/radius"), reads=[read_at(3, "<dynamic>/radius")])

@@ -14,6 +14,7 @@ from pytpc.diagnosis.thresholds.intervals import Interval, Intervals
 from pytpc.diagnosis.thresholds.inverse import kept_as, preimage
 from pytpc.static.arithmetic import Tree, evaluate
 from pytpc.static.link_unit import Comparison, LinkUnit
+from pytpc.static.parameters import same_parameter
 
 _WHOLE_TYPES = frozenset(
     f"{sign}{name}"
@@ -115,13 +116,19 @@ def threshold_of(comparison: Comparison, value: float) -> float:
 
 def read_type(comparison: Comparison, unit: LinkUnit | None) -> str | None:
     """The C++ type of the variable that the parameter is read into, if it is known."""
-    place = comparison.read_at
-    for read in unit.parameters if unit is not None else ():
-        if read.name == comparison.source and (
-            place is not None and (read.file, read.lineno) == (place.file, place.lineno)
-        ):
+    place, source = comparison.read_at, comparison.source
+    if unit is None or place is None or source is None:
+        return None
+    there = [
+        read for read in unit.parameters if (read.file, read.lineno) == (place.file, place.lineno)
+    ]
+    for read in there:
+        if read.name == source:
             return read.type
-    return None
+    # A mission may have told the name of the read, or only the number of the object.
+    alike = [read for read in there if same_parameter(read.name, source)] or there
+    types = {read.type for read in alike}
+    return types.pop() if len(types) == 1 else None
 
 
 def is_text(comparison: Comparison, unit: LinkUnit | None) -> bool:
