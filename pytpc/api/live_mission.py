@@ -90,13 +90,17 @@ class GraphFeed:
             # Another run of the simulator or of a bag begins.
             self._watching = self._fresh.snapshot()
             self._restarted = "the clock was set back, so the ranking started again"
-        found = []
+        found: list[Item] = []
         for _ in range(len(self._items)):
             item = self._items.popleft()
             if isinstance(item, Seen) and item.time_ns == 0:
                 # A node that has not heard of /clock yet.
                 item = item._replace(time_ns=now_ns)
-            if isinstance(item, ReadName) or _time_of(item) <= now_ns + _BACK_NS:
+            if isinstance(item, ReadName):
+                # A node tells it once in a while, whatever its clock says.
+                self._fresh.take_name(item)
+                found.append(item)
+            elif _time_of(item) <= now_ns + _BACK_NS:
                 found.append(item)
             else:
                 self._other_clock += 1

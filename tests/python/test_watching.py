@@ -92,6 +92,23 @@ def test_objects_are_watched_apart():
     assert list(found.unknown.values()) == [1]
 
 
+# 300 objects, which report by turns before anyone looks; each flops once, at 101 s.
+def test_many_objects_are_learned_at_once(monkeypatch):
+    given = static_info(comparison(0, "<dynamic>/speed"))
+    engine = LiveRanking(given)
+    learned = []
+    learn = engine.learn
+    monkeypatch.setattr(engine, "learn", lambda static: (learned.append(static), learn(static)))
+    found = Watching(engine, given)
+    for at, cmp in ((100, 4), (101, 2)):
+        for number in range(2, 302):
+            found.take(Seen(at * S, f"{key(0)}#{number}", "/a", cmp > 3, cmp, 3, cmp > 3))
+    rows = found.look(110 * S, 1000).rows["I"]
+    assert (len(learned), found.reports, found.unknown) == (1, 600, {})
+    assert len(rows) == 300
+    assert {row.flop_s for row in rows} == {9}
+
+
 def test_names_that_nodes_tell_are_watched():
     read = ParameterRead(
         "<dynamic>/speed", "ros::NodeHandle::param", "double", None, "src/node.cpp", 3, 5, "main",
@@ -353,7 +370,7 @@ def test_going_back_in_a_recording_is_never_having_been_further():
 class Feeding(GraphFeed):
     """A feed of a graph that is not there; what came is put into it."""
 
-    def put(self, *items: Seen) -> None:
+    def put(self, *items: Seen | ReadName) -> None:
         self._items.extend(items)
 
 
@@ -376,6 +393,29 @@ def test_the_clock_of_a_graph():
         assert (again.reports, found.reports) == (0, 2)
         assert "the clock was set back, so the ranking started again" in feed.fault()
         assert "http://127.0.0.1:9 does not answer" in feed.fault()
+    finally:
+        feed.close()
+
+
+# A node tells its names before the clock is set back; the ranking that begins again knows them.
+def test_names_outlive_the_clock_of_a_graph():
+    read = ParameterRead(
+        "<dynamic>/speed", "ros::NodeHandle::param", "double", None, "src/node.cpp", 3, 5, "main",
+        key(90),
+    )  # fmt: skip
+    given = StaticInfo.of([link_unit([comparison(0, "<dynamic>/speed")], [read])])
+    feed = Feeding("http://127.0.0.1:9", Watching(LiveRanking(given), given))
+    try:
+        feed.put(ReadName(key(90), "/a", "/a/arm/speed"), EVENTS[0])
+        found, items = feed.take(110 * S)
+        assert len(items) == 2
+        found.take(EVENTS[0])
+        again, _ = feed.take(50 * S)
+        assert again is not found
+        again.take(seen(40, 0, 4, 3))
+        again.take(seen(41, 0, 2, 3))
+        (row,) = again.look(50 * S, 5).rows["I"]
+        assert row.suspect.parameter == "/a/arm/speed"
     finally:
         feed.close()
 

@@ -27,6 +27,9 @@ from pytpc.static.static_info import StaticInfo
 BINS = 8
 """The number of parts of the window that are shown of each comparison."""
 
+_MOST_WAITING = 100_000
+"""So many reports of new instances wait for a look."""
+
 KINDS: tuple[MarkType | None, ...] = ("I", "II", None)
 
 
@@ -69,6 +72,8 @@ class Watching:
         self._given = static_info
         self._known = static_info.comparisons
         self._instances: set[str] = set()
+        self._learned: frozenset[str] = frozenset()
+        self._waiting: list[Seen | Summary] = []
         self._names: set[ReadName] = set()
         self._has_new_names = False
         self._bin_ns = max(1, round(window_s * 1e9) // BINS)
@@ -87,9 +92,10 @@ class Watching:
         """Take in an evaluation; those of unknown comparisons are only counted."""
         self._note(seen.time_ns, seen.node)
         self.reports += 1
-        if not self._knows(seen.key):
-            self.unknown[seen.key] = self.unknown.get(seen.key, 0) + 1
-            return
+        if self._knows(seen):
+            self._add(seen)
+
+    def _add(self, seen: Seen) -> None:
         self._engine.scores.add(*seen)
         track = self._tracks.setdefault(seen.key, _Track())
         part = self._bin(track, seen.time_ns)
@@ -112,9 +118,10 @@ class Watching:
         """Take in a summary of many evaluations; its flops arrive as evaluations."""
         self._note(summary.end_ns, summary.node)
         self.reports += summary.count
-        if not self._knows(summary.key):
-            self.unknown[summary.key] = self.unknown.get(summary.key, 0) + summary.count
-            return
+        if self._knows(summary):
+            self._add_summary(summary)
+
+    def _add_summary(self, summary: Summary) -> None:
         self._engine.scores.add_summary(summary)
         track = self._tracks.setdefault(summary.key, _Track())
         if track.last is None or track.last.time_ns <= summary.end_ns:
@@ -134,15 +141,24 @@ class Watching:
             self._names.add(name)
             self._has_new_names = True
 
-    def _knows(self, key: str) -> bool:
-        """Whether the analysis has found this comparison; then so it has each of its instances."""
+    def _knows(self, report: Seen | Summary) -> bool:
+        """Whether the analysis has found this comparison; then so it has each of its instances.
+
+        The reports of a new instance wait for the next look: learning takes about as long for one
+        as for hundreds.
+        """
+        key = report.key
         if key in self._known:
             return True
-        if base_key(key) not in self._known:
+        if base_key(key) in self._known and key not in self._learned:
+            self._instances.add(key)
+            self._waiting.append(report)
+            if len(self._waiting) >= _MOST_WAITING:
+                self._learn()
             return False
-        self._instances.add(key)
-        self._learn()
-        return key in self._known
+        count = report.count if isinstance(report, Summary) else 1
+        self.unknown[key] = self.unknown.get(key, 0) + count
+        return False
 
     def _learn(self) -> None:
         """Give the instances that were seen, and the names that were told, to the ranking."""
@@ -152,16 +168,25 @@ class Watching:
         self._known = self.static_info.comparisons
         self._engine.learn(self.static_info)
         self._has_new_names = False
+        self._learned = frozenset(self._instances)
+        waiting, self._waiting = self._waiting, []
+        for report in waiting:
+            if not self._knows(report):
+                continue
+            if isinstance(report, Summary):
+                self._add_summary(report)
+            else:
+                self._add(report)
 
     def ranking_at(self, mark: Mark) -> MarkRanking:
         """The suspects at an instant, as `LiveRanking.ranking_at` gives them."""
-        if self._has_new_names:
+        if self._has_new_names or self._waiting:
             self._learn()
         return self._engine.ranking_at(mark)
 
     def look(self, now_ns: int, top: int, kinds: Sequence[MarkType | None] = KINDS) -> Look:
         """What to show now: the first ``top`` suspects of each of ``kinds``."""
-        if self._has_new_names:
+        if self._has_new_names or self._waiting:
             self._learn()
         found = self._engine.rankings_at(now_ns, [Mark(now_ns, kind) for kind in kinds])
         return self.look_of(dict(zip(kinds, found, strict=True)), now_ns, top)
