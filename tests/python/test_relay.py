@@ -29,6 +29,7 @@ def log(seq: int, msg: str) -> bytes:
         (f"threshold_information:{KEY},1,cmp:2,thresh:1,res:1", f"{KEY},1,cmp:2,thresh:1,res:1"),
         (f"threshold_summary:{KEY},1,count:3", f"threshold_summary:{KEY},1,count:3"),
         ("threshold_dropped:,count:3,flops:0,why:nested",) * 2,
+        (f"threshold_name:{KEY},/n/arm/limit,of:2",) * 2,
     ],
 )
 def test_line_has_the_stamp_with_seven_decimals_cut_off(message, line):

@@ -25,7 +25,7 @@ TOPIC = "/threshold_information"
 
 _NODE = "tpc_relay"
 _REPORT = "threshold_information"
-_ACCOUNTS = ("threshold_summary", "threshold_dropped")
+_ACCOUNTS = ("threshold_summary", "threshold_dropped", "threshold_name")
 _BATCH = "threshold_batch"
 # What a slow subscriber may leave waiting before rospy drops the oldest.
 _QUEUE = 65_536
