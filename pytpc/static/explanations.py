@@ -20,6 +20,7 @@ from pytpc.static.link_unit import (
     ParameterRead,
     PathStep,
 )
+from pytpc.static.parameters import same_parameter, without_object
 from pytpc.static.static_info import StaticInfo
 
 _CLOSEST = 5
@@ -108,8 +109,18 @@ def _parameter(found: ParameterRead | NotExposed | BlindSpot) -> str | None:
 
 
 def _same(name: str | None, asked: str) -> bool:
-    """Whether a name matches: ``arm/limit`` and ``limit`` also match ``~arm/limit``."""
-    return name is not None and (name == asked or bool(re.search(f"[~/]{re.escape(asked)}$", name)))
+    """Whether a name matches: ``arm/limit`` and ``limit`` also match ``~arm/limit``.
+
+    So does what a mission calls it: ``/node/arm/limit``, or ``<dynamic>/limit (object 2)``.
+    """
+    if name is None:
+        return False
+    asked = without_object(asked)
+    return (
+        name == asked
+        or re.search(f"[~/]{re.escape(asked)}$", name) is not None
+        or same_parameter(asked, name)
+    )
 
 
 def _nothing_like(static: StaticInfo, name: str) -> str:

@@ -41,7 +41,16 @@ def of_instance(source: str, key: str) -> str:
     if number is None or DYNAMIC not in source:
         return source
     which = f"object {number}" if number else "further objects"
-    return f"{_OBJECT.sub('', source)} ({which})"
+    return f"{without_object(source)} ({which})"
+
+
+def without_object(name: str) -> str:
+    """The name of a parameter in the source, whichever object has read it.
+
+    >>> without_object("<dynamic>/radius (object 2)")
+    '<dynamic>/radius'
+    """
+    return _OBJECT.sub("", name)
 
 
 def same_parameter(given: str, source: str) -> bool:
@@ -52,7 +61,7 @@ def same_parameter(given: str, source: str) -> bool:
     matches anything; a name that is wholly unknown matches only itself.
     """
     if given != source:
-        source = _OBJECT.sub("", source)
+        source = without_object(source)
     known = _relative(source.removeprefix(f"{DYNAMIC}/"))
     if given == source or DYNAMIC in (known, given):
         return given == source
@@ -84,7 +93,7 @@ def parameter_name(comparison: Comparison) -> str:
     if comparison.source is None or comparison.read_at is None:
         return f"constant {comparison.name} at {comparison.file}:{comparison.lineno}"
     source = comparison.source
-    if _OBJECT.sub("", source) != DYNAMIC:
+    if without_object(source) != DYNAMIC:
         return source
     read = comparison.read_at
     return f"{DYNAMIC} at {read.file}:{read.lineno}{source.removeprefix(DYNAMIC)}"

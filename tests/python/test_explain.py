@@ -117,6 +117,20 @@ def test_a_name_without_its_namespace_is_enough(static: StaticInfo) -> None:
             look_up(static, name)
 
 
+def test_the_name_in_a_mission_is_that_of_the_source(tmp_path: Path) -> None:
+    parts = [read("<dynamic>/radius", 12), read("~arm/reach", 13), read("<dynamic>", 14)]
+    compared = [comparison(source="<dynamic>/radius")]
+    document = {**sample(), "parameters": parts, "comparisons": compared}
+    static = StaticInfo.of([LinkUnit.from_json(document, tmp_path)])
+    for name in ("<dynamic>/radius (object 2)", "/move_base/local/radius", "radius"):
+        assert keys(static, name) == [KEYS[0]]
+        assert [found.lineno for _, found in look_up(static, name).reads] == [12]
+    assert [found.lineno for _, found in look_up(static, "/node/arm/reach").reads] == [13]
+    assert [found.lineno for _, found in look_up(static, "<dynamic> (object 2)").reads] == [14]
+    with pytest.raises(InputError):
+        look_up(static, "/move_base/local/diameter")
+
+
 def test_a_mistyped_parameter_is_answered_with_the_closest(static: StaticInfo) -> None:
     with pytest.raises(InputError) as error:
         look_up(static, "min_coverage_limits")
