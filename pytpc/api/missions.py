@@ -16,6 +16,7 @@ from pytpc.ingest.reading import opened
 from pytpc.ingest.reading import read as read_recording
 from pytpc.recording.declaration import Declared
 from pytpc.recording.mission import Recording
+from pytpc.static.parameters import base_key
 from pytpc.static.static_info import StaticInfo, read_static
 from pytpc.values.declared import declared_in
 from pytpc.values.origins import read_origins
@@ -116,6 +117,7 @@ def check_reports(recording: Recording, static_info: StaticInfo, source: Path) -
             " Files of the sink `file` belong in the same folder, or in its folder tpc",
             source,
         )
+    reported |= {base_key(key) for key in reported}
     if reported.isdisjoint(static_info.comparisons):
         raise InputError(
             "the static information knows none of its reports: it is of another build; give the"

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
-from mission_samples import BagFile, comparison, line, static_info
+from mission_samples import BagFile, comparison, key, line, static_info
 
 from pytpc.cli.main import main
 
@@ -205,3 +205,17 @@ def test_the_words_of_the_help():
     assert result.exit_code == 0
     assert "6.12" in result.output
     assert CliRunner().invoke(main, ["stats"]).exit_code == 2
+
+
+def test_reports_of_objects_are_of_this_build(study):
+    with BagFile(study / "bare.bag") as bag:
+        for at, result in ((100, 0), (104, 1)):
+            bag.log(at, "/node", line(0, result, 5, 4).replace(key(0), f"{key(0)}#2"))
+        bag.mark(106, "/marks0/mark_action")
+    result = stats(study, "--table", "runtime", "--json", missions="bare.bag")
+    assert result.exit_code == 0, result.output
+    ranked = CliRunner().invoke(
+        main, ["rank", str(study / "bare.bag"), "--static", str(study / "static.json")]
+    )
+    assert ranked.exit_code == 0, ranked.output
+    assert "~limit" in ranked.stdout

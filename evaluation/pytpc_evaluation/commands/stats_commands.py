@@ -18,6 +18,7 @@ from pytpc.cli.arguments import JSON, PATH
 from pytpc.cli.console import console, progress, warn
 from pytpc.cli.options import STATIC, WINDOW, recording_of
 from pytpc.cli.sources import static_of
+from pytpc.static.parameters import base_key
 from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.stats.figure_choice import Figures
 from pytpc_evaluation.stats.missions import StudyMission, load_missions
@@ -137,6 +138,7 @@ def _check(missions: Sequence[StudyMission], static: StaticInfo) -> None:
     seen = {
         key for m in missions for key in (*m.recording.events.keys, *m.recording.summaries.keys)
     }
+    seen |= {base_key(key) for key in seen}
     if seen and not seen & known:
         raise InputError("the static information knows none of the reports: it is of another build")
 
