@@ -19,6 +19,7 @@ from report_samples import NASTY, Page, mission, written
 from pytpc.api.report import MissionReport, write_missions
 from pytpc.base.errors import TpcError
 from pytpc.base.wording import percent
+from pytpc.diagnosis.full_names import with_full_names
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.blame import blame
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
@@ -457,6 +458,19 @@ def test_summaries_count_among_the_facts(tmp_path):
     assert re.search(r"Reports *0 \(0 per second\), and summaries of 300 evaluations", text)
     assert re.search("Comparisons seen *1 of 2 found in the source", text)
     assert re.search("Reporting nodes *1 ", text)
+
+
+# Two objects evaluate the one comparison that was seen, of two in the source.
+def test_objects_of_a_class_count_as_one_comparison_among_the_facts(tmp_path):
+    table = events([(1, 0, 0, 1, 2), (2, 7, 0, 1, 2), (3, 7, 1, 3, 2)])
+    keys = {key(0): key(0), key(7): f"{key(0)}#2"}
+    table = replace(table, keys=tuple(keys[one] for one in table.keys))
+    recording = Recording("m", table, (Mark(ns(5), "I"),), 0, ns(6))
+    given = static_info(comparison(0, "<dynamic>/limit"), comparison(1, "never"))
+    static = with_full_names(given, recording, {})
+    report = MissionReport("m", recording, static, rank_marks(recording, static))
+    text = " ".join("".join(Page(written(tmp_path, report)).text).split())
+    assert re.search("Comparisons seen *1 of 2 found in the source", text)
 
 
 # By both scores the first is faces, by type I, the second the one by type II.

@@ -23,6 +23,7 @@ from pytpc.present.page.payload import embedded, marks_json
 from pytpc.present.page.reported_mission import ReportedMission
 from pytpc.present.page.timeline import timeline
 from pytpc.recording.marks import MarkType
+from pytpc.static.parameters import base_key
 
 ROWS = 8
 """How many suspects of a mark are listed before the reader asks for more."""
@@ -183,9 +184,9 @@ def _facts(mission: ReportedMission) -> list[tuple[str, str]]:
     recording, static = mission.recording, mission.static_info
     events, summaries = recording.events, recording.summaries
     tables = (events, summaries)
-    keys = {table.keys[code] for table in tables for code in np.unique(table.key)}
+    keys = {base_key(table.keys[code]) for table in tables for code in np.unique(table.key)}
     nodes = {table.nodes[code] for table in tables for code in np.unique(table.node)}
-    seen = len(keys & set(static.thresholds))
+    known = {base_key(key) for key in static.thresholds}
     rate = len(events) / recording.seconds if recording.seconds > 0 else math.nan
     reports = f"{len(events):,} ({rate:.0f} per second)"
     if len(summaries):
@@ -194,7 +195,7 @@ def _facts(mission: ReportedMission) -> list[tuple[str, str]]:
     facts = [
         ("Length", f"{recording.seconds:.1f} s"),
         ("Reports", reports),
-        ("Comparisons seen", f"{seen} of {len(static.thresholds)} found in the source"),
+        ("Comparisons seen", f"{len(keys & known)} of {len(known)} found in the source"),
         ("Result changes", f"{int(events.flop.sum()):,}"),
         ("Reporting nodes", str(len(nodes))),
     ]
