@@ -22,6 +22,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pytpc.ingest.declared_bag import read_declared_bag
+from pytpc.ingest.magic import BAG_MAGIC
 from pytpc.recording.declaration import Declared, RawValues, make_declared
 from pytpc.static.static_info import StaticInfo
 
@@ -123,7 +124,7 @@ def _read(path: Path) -> tuple[list[Declared], list[str]]:
     Raises:
         OSError: the file cannot be read.
     """
-    if path.suffix == ".bag":
+    if _is_bag(path):
         return read_declared_bag(path)
     if path.stat().st_size > _LARGEST_FILE:
         return [], [f"{path}: too large"]
@@ -137,12 +138,22 @@ def _read(path: Path) -> tuple[list[Declared], list[str]]:
 
 def _declaring_files(path: Path) -> list[Path]:
     if path.is_file():
-        return [path] if path.suffix in _DECLARING else []
+        return [path] if path.suffix in _DECLARING or _is_bag(path) else []
     found = []
     for folder, below, files in os.walk(path):
         below[:] = sorted(b for b in below if not b.startswith(".") and b not in _NOT_SOURCES)
         found += [Path(folder, name) for name in sorted(files) if name.endswith(_DECLARING)]
     return found
+
+
+def _is_bag(path: Path) -> bool:
+    if path.suffix == ".bag":
+        return True
+    try:
+        with path.open("rb") as stream:
+            return stream.read(len(BAG_MAGIC)) == BAG_MAGIC
+    except OSError:
+        return False
 
 
 def _package_of(source: Path) -> Path:

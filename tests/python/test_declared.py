@@ -284,6 +284,9 @@ def test_descriptions_in_a_bag(tmp_path):
     assert found[3].choices == ()
     assert found[0].description == "the gate"
     assert found[0].place == f"topic {topic}"
+    # A bag of another name is known by its first bytes, as when its reports are read.
+    other = bag.rename(tmp_path / "mission.bag.1")
+    assert read_declared([other]) == found
 
 
 def test_broken_messages_and_bags(tmp_path):
