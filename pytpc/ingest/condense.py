@@ -93,15 +93,20 @@ class Condenser:
         self._gathering.summaries.append(rows)
         self._gathering.spans.append(self._span)
         comparisons = many(np.unique(rows["key"]).size, "comparison")
+        period = f"{self._period_ns / 1e9:.1f} s"
         note = (
             f"{self._channel.source}: {many(self._condensed, 'evaluation')} of {comparisons} in hot"
-            " loops do not fit into memory: only their flops and summaries are used"
+            f" loops do not fit into memory: only their flops and summaries of {period} are used"
         )
         if self._uncounted_flops:
             note += (
                 f", without {many(self._uncounted_flops, 'flop')} that others follow within"
-                f" {self._period_ns / 1e9:.1f} s, as there are very many"
+                f" {period}, as there are very many"
             )
+        note += (
+            f"; at other times than marks, and with another window than {WINDOW_NS // 10**9} s, the"
+            " score of type II is an estimate"
+        )
         self._gathering.notes.append(note)
 
     def _condense(self, block: ReportColumns, rows: Int64s) -> Int64s:

@@ -83,7 +83,13 @@ def test_flops_and_summaries(tmp_path: Path) -> None:
     assert (rows.diff_mean[0], rows.abs_mean[0], rows.high[0]) == (0.25, 1.0, 4.0)
     assert (rows.cmp[0], bool(rows.result[0])) == (1.5, False)
     assert (found.start_ns, found.end_ns) == (10**7, mark)
-    assert any("6 evaluations of 1 comparison in hot loops" in note for note in found.notes)
+    (note,) = found.notes
+    assert "6 evaluations of 1 comparison in hot loops" in note
+    assert "summaries of 0.1 s" in note
+    assert note.endswith(
+        "; at other times than marks, and with another window than 12 s, the score of type II is an"
+        " estimate"
+    )
 
 
 def test_whole_where_there_is_room(tmp_path: Path) -> None:
