@@ -15,8 +15,8 @@ from pytpc.static.loops import inner_loops
 from pytpc.static.static_info import StaticInfo
 
 COST = [
-    "By default each costs its loop next to nothing: it sends a summary and at most 10 changes a"
-    " second.",
+    "With the default policy `light`, a comparison sends a summary and at most 10 changes a second"
+    " (50 per process).",
     "TPC_POLICY=every reports each evaluation, as 32 bytes of a file or a message on /rosout: a"
     " million a second are 1.9 GB a minute.",
 ]
