@@ -75,6 +75,24 @@ def test_one_place_in_two_link_units_is_one_location():
     assert (row.parameter, row.locations, row.comparisons) == ("coverage", 2, 5)
 
 
+# The second object is always above while the first is below: no flop, one place, one parameter. By
+# turns in one stream, each evaluation after the first would be a flop.
+def test_objects_of_a_class_count_together():
+    rows = [(1, 0, 0, 1, 2), (2, 9, 1, 3, 2), (3, 0, 0, 1, 2), (4, 9, 1, 3, 2)]
+    whole = mission(rows, 0, 10, [replace(kept(5, 6, 10, 0, True), key=key(9))])
+    keys = {key(0): key(0), key(9): f"{key(0)}#2"}
+    events_of, summaries = (
+        replace(table, keys=tuple(keys[one] for one in table.keys))
+        for table in (whole.events, whole.summaries)
+    )
+    objects = replace(whole, events=events_of, summaries=summaries)
+    found = runtime_statistics([objects], STATIC)
+    (row,) = found.rows
+    assert (row.parameter, row.locations, row.comparisons, row.flops) == ("coverage", 1, 14, 0)
+    assert (found.seen, found.locations) == (1, 4)
+    assert row.true == pytest.approx(100 * 12 / 14)
+
+
 def kept(begin: float, end: float, count: int, flops: int, result: bool) -> Summary:
     """A summary of comparison 0 in /node."""
     return Summary(

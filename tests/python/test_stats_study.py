@@ -96,6 +96,25 @@ def test_evaluations_in_another_node_begin_nothing():
     assert error_start(mission(other, (), treatment("type2")), STATIC) == ns(4)
 
 
+def of_objects(given: StudyMission) -> StudyMission:
+    """The same, where what key 9 names is evaluated by a second object of ~limit's class."""
+    keys = tuple(f"{key(0)}#2" if one == key(9) else one for one in given.recording.events.keys)
+    table = replace(given.recording.events, keys=keys)
+    return replace(given, recording=replace(given.recording, events=table))
+
+
+# Only the second object evaluates; what it does is what the one of the other tests does.
+def test_an_error_of_the_second_object_begins_and_is_found():
+    rows = [(at, 9, *rest) for at, _, *rest in MISSED]
+    for kind, start in (("type1", 2), ("type2", 4)):
+        assert error_start(of_objects(mission(rows, (), treatment(kind))), STATIC) == ns(start)
+    marked = of_objects(mission(rows, [Mark(ns(10), "I")], treatment("type1")))
+    found = found_in(Trial("t", marked), STATIC)
+    assert found is not None
+    # (10 - 2) * (1 + 1), see test_table_6_16_by_hand.
+    assert [(mark.rank, mark.score) for mark in found.marks] == [(1.0, 16.0)]
+
+
 # A flag that is off from the beginning should have been on at its first evaluation.
 def test_a_flag_is_missed_at_once():
     rows = [(7, 3, 0, 0, 0), (8, 3, 0, 0, 0)]

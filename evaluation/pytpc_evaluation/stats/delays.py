@@ -18,6 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pytpc.base.columns import Int64s
+from pytpc.diagnosis.full_names import with_full_names
 from pytpc.diagnosis.thresholds.threshold_sets import outcomes
 from pytpc.recording.events import Bools, Events, Floats
 from pytpc.recording.faults import CLOCKS_APART_NS
@@ -85,9 +86,10 @@ def error_start(mission: StudyMission, static_info: StaticInfo) -> int | None:
     treatment = mission.treatment
     if treatment is None or treatment.parameter is None:
         return None
+    named = with_full_names(static_info, mission.recording, {})
     found = {
         key: comparison
-        for key, comparison in static_info.thresholds.items()
+        for key, comparison in named.thresholds.items()
         if same_parameter(treatment.parameter, parameter_name(comparison))
     }
     events = _of_node(mission.recording, treatment, sorted(found))

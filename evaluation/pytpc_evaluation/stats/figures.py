@@ -9,6 +9,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from pytpc.base.errors import TpcError
+from pytpc.diagnosis.full_names import with_full_names
 from pytpc.diagnosis.question import WINDOW_S, Question
 from pytpc.diagnosis.scores.score_tables import STEP_S, rank_curves
 from pytpc.static.static_info import StaticInfo
@@ -76,7 +77,8 @@ def trial_figure(
     """
     recording, treatment = trial.mission.recording, trial.mission.treatment
     step_s = max(STEP_S, recording.seconds / _POINTS)
-    curves = rank_curves(recording, static_info, Question(window_s=window_s), step_s=step_s)
+    named = with_full_names(static_info, recording, {})
+    curves = rank_curves(recording, named, Question(window_s=window_s), step_s=step_s)
     changed = None if treatment is None else treatment.parameter
     return mission_figure(_title(trial), recording, curves, state, changed)
 

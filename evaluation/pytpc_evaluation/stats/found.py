@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from pytpc.diagnosis.full_names import with_full_names
 from pytpc.diagnosis.question import WINDOW_S, Question
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.diagnosis.scores.scores import NONE
@@ -56,7 +57,9 @@ def found_in(
     if treatment is None or treatment.parameter is None:
         return None
     marks = []
-    for ranking in rank_marks(trial.mission.recording, static_info, Question(window_s=window_s)):
+    recording = trial.mission.recording
+    named = with_full_names(static_info, recording, {})
+    for ranking in rank_marks(recording, named, Question(window_s=window_s)):
         suspect = ranking.suspect_of(treatment.parameter)
         rank, score = (0.0, NONE) if suspect is None else (suspect.rank, suspect.score)
         marks.append(FoundAtMark(ranking.mark.type, rank, score))

@@ -24,7 +24,7 @@ from pytpc.diagnosis.scores.summary_scores import covered
 from pytpc.recording.events import Events
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summaries
-from pytpc.static.parameters import parameter_name
+from pytpc.static.parameters import base_key, parameter_name
 from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.tables import Column, Table, statistics
 
@@ -83,7 +83,7 @@ def runtime_statistics(
     recordings: Sequence[Recording], static_info: StaticInfo
 ) -> RuntimeStatistics:
     """The rows of table 6.12 over all ``recordings`` together."""
-    keys = _Keys.of(static_info)
+    keys = _Keys.of(static_info, recordings)
     counts = [_Counts.none(keys), *(_counts(recording, keys) for recording in recordings)]
     total = _Counts(
         *(np.sum([getattr(c, field.name) for c in counts], axis=0) for field in fields(_Counts))
@@ -172,7 +172,7 @@ def _notes(found: RuntimeStatistics) -> tuple[str, ...]:
 @dataclass(frozen=True, eq=False)
 class _Keys:
     """The TPCs on parameters, sorted by key; ``parameter`` and ``place`` int64[keys] number what
-    ``names`` has, and the locations in the source."""
+    ``names`` has, and the locations in the source. Each object that evaluates one has a key."""
 
     keys: tuple[str, ...]
     parameter: Int64s
@@ -180,17 +180,25 @@ class _Keys:
     names: tuple[str, ...]
 
     @classmethod
-    def of(cls, static_info: StaticInfo) -> _Keys:
+    def of(cls, static_info: StaticInfo, recordings: Sequence[Recording]) -> _Keys:
         found = static_info.thresholds
-        keys = tuple(sorted(found))
-        of_key = {key: parameter_name(found[key]) for key in keys}
+        seen = {
+            key
+            for recording in recordings
+            for table in (recording.events, recording.summaries)
+            for key in table.keys
+        }
+        known = {key: base_key(key) for key in seen if base_key(key) in found}
+        known |= {key: key for key in found}
+        keys = tuple(sorted(known))
+        of_key = {key: parameter_name(found[known[key]]) for key in keys}
         names = tuple(sorted(set(of_key.values())))
         number = {name: index for index, name in enumerate(names)}
         places = {k.key: index for index, tpc in enumerate(static_info.tpcs) for k in tpc.keys}
         return cls(
             keys,
             np.array([number[of_key[key]] for key in keys], dtype=np.int64),
-            np.array([places[key] for key in keys], dtype=np.int64),
+            np.array([places[known[key]] for key in keys], dtype=np.int64),
             names,
         )
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import TypeVar
 
+from pytpc.diagnosis.full_names import with_full_names
 from pytpc.diagnosis.question import WINDOW_S
 from pytpc.recording.faults import faults_of
 from pytpc.static.parameters import parameter_name, same_parameter
@@ -78,7 +79,7 @@ def study_complaints(mission: StudyMission, static_info: StaticInfo) -> Iterator
         yield "its treatment is unknown, so it is left out of the tables about changed parameters"
     elif mission.treatment.parameter is not None and not any(
         same_parameter(mission.treatment.parameter, parameter_name(comparison))
-        for comparison in static_info.thresholds.values()
+        for comparison in with_full_names(static_info, mission.recording, {}).thresholds.values()
     ):
         yield (
             f"its treatment changed {mission.treatment.parameter}, with which nothing in the"
