@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import random
+import select
 import signal
 import subprocess
 import time
@@ -30,7 +31,7 @@ LOADED = ["reporter", "--rate=100000", "--threads=3", "--seconds=60", "--flops=1
 
 
 def interrupt(graph: RosGraph, nodes: Path, run: int) -> str:
-    """Run one node and interrupt it; says how that ended: ``ended``, ``hangs``, or its status."""
+    """Run one node and interrupt it; says how that ended: ``ended``, its status, or a fault."""
     env = {name: text for name, text in os.environ.items() if not name.startswith("TPC_")}
     program, *options = LOADED if run // 2 % 2 else ["interrupted"]
     process = subprocess.Popen(
@@ -47,6 +48,8 @@ def interrupt(graph: RosGraph, nodes: Path, run: int) -> str:
         # and in a thread of roscpp this aborts one node in a thousand, with and without TPC.
         starts = program == "reporter" and chance.random() < 0.1
         if not starts:
+            if not select.select([process.stdout], [], [], PATIENCE_S)[0]:
+                return "does not start"
             process.stdout.readline()
         time.sleep(LONGEST_S * chance.random())
         process.send_signal(signal.SIGINT)
