@@ -249,12 +249,28 @@ bool givesMemoryBack(StringRef Mangled) {
          Mangled.starts_with("_ZdaPv");
 }
 
+/// `_ros_time_wait_` for `ROSTime::wait4`: the words of \p Name in lower case.
+static std::string wordsOf(StringRef Name) {
+  std::string Words = "_";
+  for (size_t I = 0; I < Name.size(); ++I) {
+    char C = Name[I];
+    bool AfterUpper = I && isUpper(Name[I - 1]);
+    bool BeforeLower = I + 1 < Name.size() && isLower(Name[I + 1]);
+    if (isUpper(C) && (!AfterUpper || BeforeLower))
+      Words += '_';
+    Words += isAlpha(C) ? toLower(C) : '_';
+  }
+  return Words + '_';
+}
+
 bool waitsByName(const Function &F) {
-  static constexpr StringRef Words[] = {"sleep", "wait",  "spin",
-                                        "join",  "yield", "callavailable"};
-  std::string Last = unscoped(qualifiedName(F.getName())).lower();
+  // With what C libraries put before a word: usleep, timedwait.
+  static constexpr StringRef Words[] = {
+      "sleep_", "wait_",  "_waitpid_", "_waitid_",
+      "_spin_", "_join_", "_yield_",   "_call_available_"};
+  std::string Found = wordsOf(unscoped(qualifiedName(F.getName())));
   return any_of(Words,
-                [&](StringRef W) { return StringRef(Last).contains(W); });
+                [&](StringRef W) { return StringRef(Found).contains(W); });
 }
 
 bool endsLife(const CallBase &Call) {
