@@ -2,6 +2,8 @@
 #include "instrument/Instances.h"
 
 #include "control/IfStatements.h"
+#include "params/ParameterObjects.h"
+#include "support/Names.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/BinaryFormat/Dwarf.h"
@@ -44,48 +46,69 @@ static Value *objectBelow(Value *V) {
 Instances::Instances(const AnalysedModule &Analysed, DebugTypes &Types,
                      ArrayRef<ParameterRead> Reads)
     : Analysed(Analysed), Types(Types) {
+  for (const ParameterRead &Read : Reads)
+    if (Read.Row->Kind == Rule::Config)
+      Configs.insert(classArgument(*Read.Call->getCalledFunction()));
   for (const ParameterRead &Read : Reads) {
-    addReader(classOf(*Read.Call->getFunction()));
+    addReader(classOf(*Read.Call->getFunction()), /*InMethod=*/true);
     // A method that was inlined.
     for (const DILocation *At = Read.Call->getDebugLoc(); At;
          At = At->getInlinedAt())
       addReader(dyn_cast_or_null<DICompositeType>(
-          At->getScope()->getSubprogram()->getScope()));
+                    At->getScope()->getSubprogram()->getScope()),
+                /*InMethod=*/true);
     if (Value *Target = Read.Target; Target && isa<GEPOperator>(Target))
-      addReader(Types.pointee(objectBelow(Target)));
+      addReader(Types.pointee(objectBelow(Target)), /*InMethod=*/false);
   }
 }
 
-void Instances::addReader(const DIType *T) {
+bool Instances::isConfig(const DICompositeType &Class) const {
+  return !Configs.empty() && Configs.contains(nameWithScopes(Class));
+}
+
+void Instances::addReader(const DIType *T, bool InMethod) {
   const auto *Class = dyn_cast_or_null<DICompositeType>(DebugTypes::plain(T));
   // A closure is made again for each call.
-  if (Class && !Class->getName().empty() &&
-      Readers.insert(Types.numberOf(Class)).second)
-    addParts(*Class);
+  if (!Class || Class->getName().empty() || isConfig(*Class))
+    return;
+  Readers.insert(Types.numberOf(Class));
+  if (InMethod)
+    Reading.insert(Types.numberOf(Class));
+  addParts(*Class);
+}
+
+void Instances::addPart(const DICompositeType &Class) {
+  if (isConfig(Class))
+    return;
+  Parts.insert(Types.numberOf(&Class));
+  addParts(Class);
 }
 
 void Instances::addParts(const DICompositeType &Class) {
+  // A class may be met as a declaration first.
+  if (Class.isForwardDecl() || !Defined.insert(Types.numberOf(&Class)).second)
+    return;
   for (const DINode *Element : Class.getElements()) {
     const auto *Part = dyn_cast_or_null<DIDerivedType>(Element);
     if (!Part || Part->isStaticMember() ||
         (Part->getTag() != dwarf::DW_TAG_member &&
          Part->getTag() != dwarf::DW_TAG_inheritance))
       continue;
-    const auto *Of = dyn_cast_or_null<DICompositeType>(
-        DebugTypes::plain(Part->getBaseType()));
-    if (Of && Parts.insert(Types.numberOf(Of)).second)
-      addParts(*Of);
+    if (const auto *Of = dyn_cast_or_null<DICompositeType>(
+            DebugTypes::plain(Part->getBaseType())))
+      addPart(*Of);
   }
 }
 
-bool Instances::isDerived(const DICompositeType &Class) {
+bool Instances::isDerived(const DICompositeType &Class,
+                          const DenseSet<unsigned> &From) {
   for (const DINode *Element : Class.getElements()) {
     const auto *Base = dyn_cast_or_null<DIDerivedType>(Element);
     if (!Base || Base->getTag() != dwarf::DW_TAG_inheritance)
       continue;
     const auto *Of = dyn_cast_or_null<DICompositeType>(
         DebugTypes::plain(Base->getBaseType()));
-    if (Of && (Readers.contains(Types.numberOf(Of)) || isDerived(*Of)))
+    if (Of && (From.contains(Types.numberOf(Of)) || isDerived(*Of, From)))
       return true;
   }
   return false;
@@ -97,7 +120,24 @@ bool Instances::isInstance(const DIType *T) {
     return false;
   unsigned Number = Types.numberOf(Class);
   return Readers.contains(Number) || Parts.contains(Number) ||
-         isDerived(*Class);
+         isDerived(*Class, Readers);
+}
+
+/// True if \p T is a class whose methods read parameters, or derived from one.
+bool Instances::reads(const DIType *T) {
+  const auto *Class = dyn_cast_or_null<DICompositeType>(DebugTypes::plain(T));
+  return Class && (Reading.contains(Types.numberOf(Class)) ||
+                   isDerived(*Class, Reading));
+}
+
+/// True if \p Object may be an instance whose fields are thresholds.
+bool Instances::canHold(const Value &Object) {
+  const DIType *T = Types.pointee(&Object);
+  if (const auto *A = dyn_cast<Argument>(&Object))
+    return isInstance(T) &&
+           (A == tpc::objectOf(*const_cast<Function *>(A->getParent())) ||
+            (reads(T) && !A->hasByValAttr()));
+  return isa<LoadInst, PHINode, CallBase, SelectInst>(Object) && isInstance(T);
 }
 
 /// The instance in a field of which \p Threshold, or what it was computed from,
@@ -111,7 +151,7 @@ Value *Instances::holderOf(Value *Threshold) {
       continue;
     if (auto *Load = dyn_cast<LoadInst>(I)) {
       Value *Object = objectBelow(Load->getPointerOperand());
-      if (isa<Argument, LoadInst>(Object) && isInstance(Types.pointee(Object)))
+      if (canHold(*Object))
         return Object;
       continue;
     }
@@ -139,21 +179,21 @@ Value *Instances::objectOf(const Comparison &C, Instruction &Before) {
   Value *Threshold = C.Compare     ? C.Compare->getOperand(C.Threshold)
                      : C.FlagValue ? C.FlagValue
                                    : conditionOf(*C.Predicate);
-  if (Value *Holder = holderOf(Threshold)) {
-    // What was `this` in the source is so in the analysed copy, unless the
-    // method was inlined there.
-    if (const auto *A = dyn_cast<Argument>(Holder)) {
-      Function &F = *Before.getFunction();
-      if (A->getParent()->getName() == F.getName() &&
-          A->getArgNo() < F.arg_size())
-        return F.getArg(A->getArgNo());
-    } else if (Value *There = Analysed.original(Holder);
-               There && There->getType()->isPointerTy() &&
-               dominates(*There, Before)) {
-      return There;
-    }
+  Function &F = *Before.getFunction();
+  Value *Holder = holderOf(Threshold);
+  // A method that was inlined in the analysed copy has in the original program
+  // its own object.
+  if (Holder && C.place().getFunction()->getName() == F.getName()) {
+    if (const auto *A = dyn_cast<Argument>(Holder))
+      return A->getArgNo() < F.arg_size() ? F.getArg(A->getArgNo()) : nullptr;
+    // The threshold is that of another object. Which one a value is that is
+    // chosen at run time (phi, select) depends on the optimisation level.
+    Value *There = isa<LoadInst>(Holder) ? Analysed.original(Holder) : nullptr;
+    return There && There->getType()->isPointerTy() && dominates(*There, Before)
+               ? There
+               : nullptr;
   }
-  return Own && isInstance(classOf(*Before.getFunction())) ? Own : nullptr;
+  return Own && isInstance(classOf(F)) ? Own : nullptr;
 }
 
 } // namespace tpc

@@ -9,7 +9,10 @@
 // - or is a base class or a member of such a class, or derived from it.
 //
 // An object of any other class, such as one of many obstacles, is none: a
-// comparison there has one report for all objects, as in a free function.
+// comparison there has one report for all objects, as in a free function. Nor
+// is the argument of a function one, unless its methods read parameters: it
+// may be a copy, such as the settings that dynamic_reconfigure passes, and has
+// another address each time.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_INSTANCES_H
@@ -22,6 +25,7 @@
 
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/DenseSet.h"
+#include "llvm/ADT/StringSet.h"
 #include "llvm/IR/Dominators.h"
 
 namespace tpc {
@@ -43,17 +47,25 @@ public:
   llvm::Value *objectOf(const Comparison &C, llvm::Instruction &Before);
 
 private:
-  void addReader(const llvm::DIType *T);
+  void addReader(const llvm::DIType *T, bool InMethod);
+  void addPart(const llvm::DICompositeType &Class);
+  bool isConfig(const llvm::DICompositeType &Class) const;
   void addParts(const llvm::DICompositeType &Class);
   bool isInstance(const llvm::DIType *T);
-  bool isDerived(const llvm::DICompositeType &Class);
+  bool isDerived(const llvm::DICompositeType &Class,
+                 const llvm::DenseSet<unsigned> &From);
+  bool reads(const llvm::DIType *T);
+  bool canHold(const llvm::Value &Object);
   llvm::Value *holderOf(llvm::Value *Threshold);
   bool dominates(const llvm::Value &V, llvm::Instruction &Before);
 
   const AnalysedModule &Analysed;
   DebugTypes &Types;
   llvm::DenseSet<unsigned> Readers; ///< numbers of classes
+  llvm::DenseSet<unsigned> Reading; ///< those of Readers whose methods read
   llvm::DenseSet<unsigned> Parts;   ///< bases and members of those
+  llvm::DenseSet<unsigned> Defined; ///< those of both whose members are known
+  llvm::StringSet<> Configs;        ///< names of classes of settings
   llvm::DenseMap<llvm::Function *, std::unique_ptr<llvm::DominatorTree>> Trees;
 };
 

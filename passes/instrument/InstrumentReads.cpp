@@ -148,7 +148,10 @@ SmallVector<Instruction *, 0> insertNames(Module &M,
     SmallVector<Value *, 6> Arguments{textOf(M, R.Key, "tpc.key"), Handle, Name,
                                       B.getInt1(!R.Name)};
     if (R.Object)
-      Arguments.append({R.Object, B.getInt64(R.ObjectSize)});
+      Arguments.append(
+          {R.Object,
+           ConstantInt::get(M.getDataLayout().getIntPtrType(M.getContext()),
+                            R.ObjectSize)});
     Inserted.push_back(B.CreateCall(R.Object ? ReportOf : Report, Arguments));
   }
   return Inserted;

@@ -129,8 +129,7 @@ void findAccessors(Module &M, ModuleAnalysisManager &AM,
 // Classes whose fields are all parameters
 //===----------------------------------------------------------------------===//
 
-/// The name of \p Class with its scopes.
-static std::string nameWithScopes(const DICompositeType &Class) {
+std::string nameWithScopes(const DICompositeType &Class) {
   std::string Name = Class.getName().str();
   for (const DIScope *S = Class.getScope(); S; S = S->getScope())
     if (isa<DINamespace>(S) || isa<DICompositeType>(S))

@@ -15,6 +15,9 @@ namespace tpc {
 
 class Texts;
 
+/// The name of \p Class with its scopes.
+std::string nameWithScopes(const llvm::DICompositeType &Class);
+
 /// What \p Call, a method of an object that a read made, returns: its result,
 /// or the loads through the reference that it returns.
 llvm::SmallVector<llvm::Value *, 1> valuesOf(llvm::CallBase &Call);
