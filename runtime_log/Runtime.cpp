@@ -270,12 +270,21 @@ void Runtime::startHelper() {
   // this thread, even for a moment: a signal that comes then goes to another
   // one, and if a handler that calls ros::shutdown() runs in roscpp's own
   // threads, the node aborts.
-  sigset_t All;
-  sigfillset(&All);
   pthread_attr_t Attributes;
   pthread_attr_init(&Attributes);
+#ifdef TPC_HAS_ATTR_SIGMASK
+  sigset_t All;
+  sigfillset(&All);
   pthread_attr_setsigmask_np(&Attributes, &All);
+#endif
   auto Body = [](void *) -> void * {
+#ifndef TPC_HAS_ATTR_SIGMASK
+    // Until here a signal may come to this thread, but only if no other one
+    // takes it, and Linux asks the main thread first.
+    sigset_t Every;
+    sigfillset(&Every);
+    pthread_sigmask(SIG_SETMASK, &Every, nullptr);
+#endif
     of().help();
     return nullptr;
   };
