@@ -44,7 +44,8 @@ struct Site {
   /// Whether the key that was found at \p Address is still there.
   bool isAt(const char *Address) const {
     if (__builtin_expect(IsShort, 0))
-      return !std::strncmp(Key.data(), Address, Length) && !Address[Length];
+      return (!std::strncmp(Key.data(), Address, Length) && !Address[Length]) ||
+             Key == Address;
     uint64_t There[2];
     std::memcpy(There, Address, sizeof(There));
     return There[0] == Head[0] && There[1] == Head[1];
