@@ -6,6 +6,7 @@
 #include "Threads.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace tpc {
 
@@ -31,8 +32,15 @@ const std::string *ReadNames::keep(std::string Text, size_t &Count) {
 
 /// Gives the number of the object of a name or key.
 void ReadNames::tell(const std::string &Of, uint32_t Object) {
-  if (TellsObjects)
-    keep(Of + ",of:" + std::to_string(Object), ObjectCount);
+  if (TellsObjects && !keep(Of + ",of:" + std::to_string(Object), ObjectCount))
+    warnOfObjects();
+}
+
+void ReadNames::warnOfObjects() {
+  if (!std::exchange(IsFullOfObjects, true))
+    warn("more than " + std::to_string(Most) +
+         " times an object of this process reads a parameter or evaluates a "
+         "comparison: of further ones it is not reported which object it was");
 }
 
 /// Gives the objects in which \p R has read its name.
@@ -51,13 +59,19 @@ void ReadNames::add(const char *Key, const std::string &Name,
     warn("this process reads more than " + std::to_string(Most) +
          " parameters; the names of further ones are not reported");
   }
-  if (!Kept || !Object || Readers.size() == Most)
+  if (!Kept || !Object)
     return;
   auto Begin = reinterpret_cast<uintptr_t>(Object);
   Reader R{Begin, Begin + std::max<uint64_t>(Size, 1), Kept};
-  if (!Readers.insert(R).second)
+  if (Readers.count(R))
     return;
   bool IsFirst = FirstNames.try_emplace(Key, Kept).first->second == Kept;
+  if (Readers.size() == Most) {
+    if (TellsObjects || !IsFirst)
+      warnOfObjects();
+    return;
+  }
+  Readers.insert(R);
   if (TellsObjects || IsFirst)
     return tellOf(R);
   TellsObjects = true;

@@ -44,7 +44,8 @@ public:
   void add(const char *Key, const std::string &Name, const void *Object,
            uint64_t Size);
 
-  /// Keeps that the site \p Key has the evaluations of \p Object.
+  /// Keeps that the site \p Key has the evaluations of \p Object. Beyond Most
+  /// such facts about objects nothing is kept, with one warning.
   void addObject(const std::string &Key, const void *Object);
 
   /// Gives \p To the names that it has not got; all of them if it is another
@@ -73,6 +74,7 @@ private:
   const std::string *keep(std::string Text, size_t &Count);
   void tell(const std::string &Of, uint32_t Object);
   void tellOf(const Reader &R);
+  void warnOfObjects();
 
   std::mutex Lock; ///< for everything that follows
   /// `KEY,NAME`, and what is told of objects. Its nodes stay where they are.
@@ -83,6 +85,7 @@ private:
   int64_t AllGivenAt = 0, AgainNs = FirstAgainNs;
   size_t NameCount = 0, ObjectCount = 0; ///< in Known
   bool IsFull = false;                   ///< of names
+  bool IsFullOfObjects = false;
   std::map<std::string, const std::string *, std::less<>> FirstNames;
   std::set<Reader> Readers;
   std::map<uintptr_t, uint32_t> Objects; ///< those that compare, by address

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import subprocess
 from collections import Counter, defaultdict
+from pathlib import Path
 
 import log_file
 import pytest
+from compiling import compile_program
 from test_file import key
+
+HERE = Path(__file__).parent
 
 LIGHT = {"policy": "light", "period": 0.02, "site_cap": 0, "process_cap": 0}
 POLICIES = [{"policy": "edges", "period": 0.02}, LIGHT]
@@ -90,3 +95,29 @@ def test_the_hot_object_is_counted_in_place(drive, files):
     file = log_file.read(files()[0])
     counts = {name: count for name, (count, _) in totals(file).items()}
     assert counts == {key(0): turns // 1000, f"{key(0)}#2": turns}
+
+
+@pytest.fixture(scope="session")
+def reading_objects(tmp_path_factory):
+    program = tmp_path_factory.mktemp("objects") / "reading_objects"
+    flags = subprocess.check_output(["pkg-config", "--cflags", "--libs", "roscpp"], text=True)
+    return compile_program(HERE / "reading_objects.cpp", program, *flags.split())
+
+
+# Which object has read which name is remembered of 10,000 objects; one line says that there are
+# more. Nobody needs it if all have read the same name.
+@pytest.mark.parametrize(
+    ("objects", "names", "lines"), [(10_000, 2, 0), (10_020, 2, 1), (10_020, 1, 0)]
+)
+def test_too_many_objects_read(reading_objects, settings, objects, names, lines):
+    ran = subprocess.run(
+        [str(reading_objects), str(objects), str(names)],
+        env={**settings, "ROS_LOG_DIR": settings["TPC_FOLDER"]},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=True,
+    )
+    told = [line for line in ran.stderr.splitlines() if "which object it was" in line]
+    assert len(told) == lines
+    assert all("more than 10000 times" in line for line in told)
