@@ -93,8 +93,8 @@ Site *Sites::make(const char *Key, const void *Object) {
   }
   if (Warns)
     warn("more than " + std::to_string(MostInstances) +
-         " objects evaluate comparison " + Key +
-         ": further ones share their reports, here and elsewhere");
+         " objects evaluate comparison " + Key + "; the others share " + Key +
+         "#0, and so for every comparison");
   if (Object && !IsShared)
     ReadNames::all().addObject(S->Key, Object);
   return S;

@@ -105,8 +105,8 @@ static void warnOfSilence() {
   if (Since > std::chrono::nanoseconds(Silence).count() && !Said.exchange(true))
     warn("the ROS master has not answered for " +
          std::to_string(Silence.count()) +
-         " s: until it does, its parameters are not read, and topics that are "
-         "not advertised yet get no reports");
+         " s: until it does, TPC's settings on the parameter server are not "
+         "read, and topics that are not advertised yet get no reports");
 }
 
 bool askMaster(std::function<void()> Job) {
