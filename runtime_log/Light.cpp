@@ -75,7 +75,7 @@ struct LightSite {
   void clear();
   void settle();
   /// Goes on to count in \p To, from nothing; the site is locked.
-  void countIn(SiteWords &To);
+  void goOnIn(SiteWords &To);
   bool isEmpty() const { return !Kept.Count && !Passed && !Unseen.load(); }
   /// One evaluation; the site is locked.
   void inspect(Thread &T, const Report &R);
@@ -150,7 +150,7 @@ void LightSite::settle() {
     Blind += More;
 }
 
-void LightSite::countIn(SiteWords &To) {
+void LightSite::goOnIn(SiteWords &To) {
   settle();
   Words.store(&To, std::memory_order_release);
   for (int Result = 0; Result < 2; ++Result)
@@ -425,9 +425,9 @@ static void handWordsTo(LightSite &L) {
   if (!L.lock())
     return;
   Unlocker Second{L};
-  Now.countIn(Now.Own);
+  Now.goOnIn(Now.Own);
   L.Module->Object = L.Object;
-  L.countIn(*L.Module);
+  L.goOnIn(*L.Module);
   Owner->second = &L;
 }
 
@@ -546,7 +546,7 @@ void tpc_forget_sites(SiteWords *First) {
       sched_yield();
     Unlocker Guard{L};
     if (L.Words.load() != &L.Own)
-      L.countIn(L.Own);
+      L.goOnIn(L.Own);
     L.Module = nullptr;
   });
 }

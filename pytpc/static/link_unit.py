@@ -249,7 +249,9 @@ class LinkUnit:
         if self.failure is not None:
             return f"{name} was not analysed and reports nothing: {self.failure}"
         if self.incomplete is not None:
-            return f"{name} was not analysed to the end, comparisons may be missing: {self.incomplete}"
+            return (
+                f"{name} was not analysed to the end, comparisons may be missing: {self.incomplete}"
+            )
         return None
 
     @property
