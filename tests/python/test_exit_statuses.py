@@ -207,12 +207,27 @@ def test_0_with_a_warning_where_a_part_does_not_fit(name: str, tmp_path: Path):
     assert "~min_coverage_limit" in result.stdout
 
 
+def wait_until_it_waits(process: subprocess.Popen[str]) -> None:
+    """Return once the process has slept for a second without using its processor.
+
+    Before that it imports modules. If the signal comes in an ``exec`` of an import, Python ends the
+    process by the signal, whoever catches KeyboardInterrupt.
+    """
+    quiet, used = 0, ""
+    while quiet < 10:
+        time.sleep(0.1)
+        state, *fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(") ")[2].split()
+        now = " ".join(fields[10:12])
+        quiet = quiet + 1 if state == "S" and now == used else 0
+        used = now
+
+
 def test_interrupting_the_real_command():
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     command = pytpc("watch", "--static", str(STATIC), "--once", "--seconds", "60")
     with subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True) as process:
         try:
-            time.sleep(3.0)
+            wait_until_it_waits(process)
             process.send_signal(signal.SIGINT)
             said = process.communicate(timeout=20)[1]
         finally:
