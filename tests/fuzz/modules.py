@@ -267,6 +267,6 @@ def check(text: Path, seed: int) -> Checked:
         unit = LinkUnit.from_json(json.loads(file.read_text("utf-8")), file)
     except (OSError, ValueError, InputError) as error:
         return Checked(f"static information: {error}")
-    if unit.failure is not None:
-        return Checked(f"{unit.failure} {ran.errors[:500]}")
+    if unit.trouble is not None:
+        return Checked(f"{unit.trouble} {ran.errors[:500]}")
     return Checked("", sum(found.type != "constant" for found in unit.comparisons))
