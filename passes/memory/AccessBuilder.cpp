@@ -18,6 +18,13 @@ void AccessBuilder::addWrite(Instruction &I, const Location &L) {
   R.PartWrites.push_back({&I, L});
 }
 
+/// \p Call writes any part of the object at \p L.
+void AccessBuilder::addPartWrite(CallBase &Call, const Location &L) {
+  addWrite(Call, L);
+  R.HandedIndex.add(R.Handed.size(), L);
+  R.Handed.push_back({&Call, L});
+}
+
 void AccessBuilder::addCopy(Instruction &I, Locations To, Locations From) {
   unsigned Number = R.Copies.size();
   for (const Location &L : To) {
@@ -160,11 +167,10 @@ void AccessBuilder::fileCall(CallBase &Call) {
       const auto *Global = dyn_cast_or_null<GlobalVariable>(L.Root);
       if (Global && Global->isConstant())
         continue;
-      addWrite(Call, L);
-      if (!Opaque)
-        continue;
-      R.HandedIndex.add(R.Handed.size(), L);
-      R.Handed.push_back({&Call, L});
+      if (Opaque)
+        addPartWrite(Call, L);
+      else
+        addWrite(Call, L);
     }
   }
 }
@@ -188,8 +194,11 @@ void AccessBuilder::fileAccesses() {
           addWrite(I, L);
         }
       } else if (auto *Copy = dyn_cast<MemTransferInst>(&I)) {
-        addCopy(I, Pointers.copied(*Copy, Copy->getRawDest()),
-                Pointers.copied(*Copy, Copy->getRawSource()));
+        addCopy(I, Pointers.covered(*Copy, Copy->getRawDest()),
+                Pointers.covered(*Copy, Copy->getRawSource()));
+      } else if (auto *Fill = dyn_cast<MemSetInst>(&I)) {
+        for (const Location &L : Pointers.covered(*Fill, Fill->getRawDest()))
+          addPartWrite(*Fill, L);
       } else if (auto *Call = dyn_cast<CallBase>(&I);
                  Call && !isa<IntrinsicInst>(Call)) {
         fileCall(*Call);

@@ -240,8 +240,8 @@ Locations PointsTo::touched(const Instruction &I) {
   return All;
 }
 
-Locations PointsTo::copied(const MemTransferInst &Copy, const Value *Pointer) {
-  const auto *Bytes = dyn_cast<ConstantInt>(Copy.getLength());
+Locations PointsTo::covered(const MemIntrinsic &I, const Value *Pointer) {
+  const auto *Bytes = dyn_cast<ConstantInt>(I.getLength());
   return handed(
       Pointer, Bytes && all_of(resolve(Pointer, false), [&](const Location &L) {
                  Type *T = elementOf(Types.typeAt(L));

@@ -48,10 +48,9 @@ public:
   /// \p IsOne says that a single object is meant.
   Locations handed(const llvm::Value *Pointer, bool IsOne);
 
-  /// What \p Copy reads or writes at \p Pointer: one element of an array if it
-  /// copies no more than that.
-  Locations copied(const llvm::MemTransferInst &Copy,
-                   const llvm::Value *Pointer);
+  /// What \p I, memcpy, memmove or memset, reads or writes at \p Pointer: one
+  /// element of an array if it is no larger than that.
+  Locations covered(const llvm::MemIntrinsic &I, const llvm::Value *Pointer);
 
   /// What \p I, a load or store, touches: a scalar, or all scalars of the
   /// object that is loaded or stored as one value.

@@ -320,7 +320,7 @@ void Slicer::enterDerived(const Value *Pointer, bool IntoCallees) {
     const auto *Call = dyn_cast<CallBase>(I);
     if (isa<GetElementPtrInst>(I))
       enterDerived(I, IntoCallees);
-    else if (IsStoredTo || isa<MemTransferInst>(I))
+    else if (IsStoredTo || isa<MemIntrinsic>(I))
       enter(I, Gives, Why::Writes);
     else if (Call && !isa<IntrinsicInst>(I) && !Settled.contains(I) &&
              !endsLife(*Call)) {
@@ -426,6 +426,10 @@ void Slicer::enterOperands(Instruction &I) {
   }
   if (auto *Copy = dyn_cast<MemTransferInst>(&I))
     return enterMemory(Copy->getRawSource(), I);
+  if (auto *Fill = dyn_cast<MemSetInst>(&I)) {
+    enterValue(Fill->getValue());
+    return enterPointer(Fill->getRawDest());
+  }
   if (auto *Call = dyn_cast<CallBase>(&I); Call && !isa<IntrinsicInst>(&I))
     return enterResult(*Call);
   if (auto *Store = dyn_cast<StoreInst>(&I)) {
