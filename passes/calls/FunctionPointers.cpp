@@ -4,7 +4,6 @@
 #include "calls/ClassHierarchy.h"
 #include "support/Functions.h"
 
-#include "llvm/ADT/DenseSet.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Operator.h"
@@ -42,7 +41,7 @@ enter(Type *T, std::pair<const void *, unsigned> Where) {
   return Where;
 }
 
-FunctionPointers::Cell FunctionPointers::cellOf(const Value *Pointer) {
+FunctionPointers::Cell FunctionPointers::findCell(const Value *Pointer) {
   while (true) {
     const auto *GEP = dyn_cast<GEPOperator>(Pointer);
     if (!GEP)
@@ -75,6 +74,13 @@ FunctionPointers::Cell FunctionPointers::cellOf(const Value *Pointer) {
         GEP && isa<StructType>(GEP->getSourceElementType()))
       return enter(GEP->getSourceElementType(), {Pointer, NoIndex});
   return {Pointer, NoIndex};
+}
+
+FunctionPointers::Cell FunctionPointers::cellOf(const Value *Pointer) {
+  auto [It, New] = Cells.try_emplace(Pointer);
+  if (New)
+    It->second = findCell(Pointer);
+  return It->second;
 }
 
 void FunctionPointers::addInitializer(const Constant *C, Cell Where) {
@@ -116,31 +122,33 @@ FunctionPointers::FunctionPointers(Module &M) {
         Cell To = cellOf(Copy->getRawDest()),
              From = cellOf(Copy->getRawSource());
         if (To != From)
-          CopiedFrom[To].push_back(Copy->getRawSource());
+          CopiedFrom[To].insert(From);
       }
     }
 }
 
 /// One backward search from a callee to the functions that it can be.
 struct FunctionPointers::Search {
-  const FunctionPointers &All;
+  FunctionPointers &All;
   const CallBase &Call;
   CallersTy Callers;
   SmallSetVector<Function *, 4> Found;
   DenseSet<const Value *> SeenValues;
   DenseSet<Cell> SeenCells;
   SmallVector<const Value *, 16> Values;
-  SmallVector<std::pair<Cell, const Value *>, 16> Cells;
+  SmallVector<Cell, 16> Cells;
+  bool IsEndless = false;
 
   void value(const Value *V) {
     if (SeenValues.insert(V).second)
       Values.push_back(V);
   }
-  void memory(const Value *Pointer) {
-    Cell C = cellOf(Pointer);
+  void cell(Cell C) {
+    IsEndless |= All.Endless.contains(C);
     if (SeenCells.insert(C).second)
-      Cells.push_back({C, Pointer});
+      Cells.push_back(C);
   }
+  void memory(const Value *Pointer) { cell(All.cellOf(Pointer)); }
   template <typename Fn> void eachActual(const Argument &Arg, Fn F) {
     for (const CallBase *Caller : Callers(Arg.getParent()))
       if (Arg.getArgNo() < Caller->arg_size())
@@ -185,21 +193,24 @@ void FunctionPointers::Search::step(Cell C) {
     for (const Value *V : It->second)
       value(V);
   if (auto It = All.CopiedFrom.find(C); It != All.CopiedFrom.end())
-    for (const Value *Source : It->second)
-      memory(Source);
+    for (Cell Source : It->second)
+      cell(Source);
 }
 
 void FunctionPointers::Search::run(const Value *Callee) {
   value(Callee);
   while (!Values.empty() || !Cells.empty()) {
-    if (SeenValues.size() + SeenCells.size() > MaxVisited ||
-        Found.size() > MaxTargets)
+    IsEndless |= SeenValues.size() + SeenCells.size() > MaxVisited;
+    if (IsEndless)
+      if (const auto *Load = dyn_cast<LoadInst>(Callee))
+        All.Endless.insert(All.cellOf(Load->getPointerOperand()));
+    if (IsEndless || Found.size() > MaxTargets)
       return Found.clear();
     if (!Values.empty()) {
       step(Values.pop_back_val());
       continue;
     }
-    auto [C, Pointer] = Cells.pop_back_val();
+    Cell C = Cells.pop_back_val();
     step(C);
     if (C.second != NoIndex)
       continue;
@@ -214,7 +225,7 @@ void FunctionPointers::Search::run(const Value *Callee) {
     } else if (const auto *Inner = dyn_cast<CallBase>(Base)) {
       eachReturned(*Inner, [&](const Value *R) { memory(R); });
     } else if (const auto *Load = dyn_cast<LoadInst>(Base)) {
-      if (auto It = All.Stored.find(cellOf(Load->getPointerOperand()));
+      if (auto It = All.Stored.find(All.cellOf(Load->getPointerOperand()));
           It != All.Stored.end())
         for (const Value *Target : It->second)
           memory(Target);
@@ -230,7 +241,7 @@ void FunctionPointers::Search::run(const Value *Callee) {
 }
 
 SmallVector<Function *, 2> FunctionPointers::targets(const CallBase &Call,
-                                                     CallersTy Callers) const {
+                                                     CallersTy Callers) {
   Search S{*this, Call, Callers, {}, {}, {}, {}, {}};
   S.run(Call.getCalledOperand());
   SmallVector<Function *, 2> Out(S.Found.begin(), S.Found.end());

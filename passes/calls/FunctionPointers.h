@@ -12,6 +12,7 @@
 #define TPC_FUNCTIONPOINTERS_H
 
 #include "llvm/ADT/DenseMap.h"
+#include "llvm/ADT/DenseSet.h"
 #include "llvm/ADT/STLFunctionalExtras.h"
 #include "llvm/ADT/SetVector.h"
 #include "llvm/ADT/SmallVector.h"
@@ -31,7 +32,7 @@ public:
   /// types; \p Callers holds the calls resolved so far. Empty if no target is
   /// known, or too many are.
   llvm::SmallVector<llvm::Function *, 2> targets(const llvm::CallBase &Call,
-                                                 CallersTy Callers) const;
+                                                 CallersTy Callers);
 
 private:
   /// A piece of memory: field Index of a class or, with NoIndex, what the
@@ -40,11 +41,15 @@ private:
   static constexpr unsigned NoIndex = ~0U;
   struct Search;
 
-  static Cell cellOf(const llvm::Value *Pointer);
+  static Cell findCell(const llvm::Value *Pointer);
+  Cell cellOf(const llvm::Value *Pointer);
   void addInitializer(const llvm::Constant *C, Cell Where);
 
+  llvm::DenseMap<const llvm::Value *, Cell> Cells;
+  /// A search that comes to one of these visits too many places.
+  llvm::DenseSet<Cell> Endless;
   llvm::DenseMap<Cell, llvm::SmallVector<const llvm::Value *, 2>> Stored;
-  llvm::DenseMap<Cell, llvm::SmallVector<const llvm::Value *, 1>> CopiedFrom;
+  llvm::DenseMap<Cell, llvm::SmallSetVector<Cell, 1>> CopiedFrom;
 };
 
 } // namespace tpc
