@@ -77,7 +77,7 @@ FunctionPointers::Cell FunctionPointers::findCell(const Value *Pointer) {
 }
 
 FunctionPointers::Cell FunctionPointers::cellOf(const Value *Pointer) {
-  auto [It, New] = Cells.try_emplace(Pointer);
+  auto [It, New] = CellOf.try_emplace(Pointer);
   if (New)
     It->second = findCell(Pointer);
   return It->second;
@@ -137,14 +137,14 @@ struct FunctionPointers::Search {
   DenseSet<Cell> SeenCells;
   SmallVector<const Value *, 16> Values;
   SmallVector<Cell, 16> Cells;
-  bool IsEndless = false;
+  bool IsTooFar = false;
 
   void value(const Value *V) {
     if (SeenValues.insert(V).second)
       Values.push_back(V);
   }
   void cell(Cell C) {
-    IsEndless |= All.Endless.contains(C);
+    IsTooFar |= All.TooFar.contains(C);
     if (SeenCells.insert(C).second)
       Cells.push_back(C);
   }
@@ -200,11 +200,11 @@ void FunctionPointers::Search::step(Cell C) {
 void FunctionPointers::Search::run(const Value *Callee) {
   value(Callee);
   while (!Values.empty() || !Cells.empty()) {
-    IsEndless |= SeenValues.size() + SeenCells.size() > MaxVisited;
-    if (IsEndless)
+    IsTooFar |= SeenValues.size() + SeenCells.size() > MaxVisited;
+    if (IsTooFar)
       if (const auto *Load = dyn_cast<LoadInst>(Callee))
-        All.Endless.insert(All.cellOf(Load->getPointerOperand()));
-    if (IsEndless || Found.size() > MaxTargets)
+        All.TooFar.insert(All.cellOf(Load->getPointerOperand()));
+    if (IsTooFar || Found.size() > MaxTargets)
       return Found.clear();
     if (!Values.empty()) {
       step(Values.pop_back_val());

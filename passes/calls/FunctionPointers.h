@@ -45,9 +45,10 @@ private:
   Cell cellOf(const llvm::Value *Pointer);
   void addInitializer(const llvm::Constant *C, Cell Where);
 
-  llvm::DenseMap<const llvm::Value *, Cell> Cells;
+  /// What findCell() found.
+  llvm::DenseMap<const llvm::Value *, Cell> CellOf;
   /// A search that comes to one of these visits too many places.
-  llvm::DenseSet<Cell> Endless;
+  llvm::DenseSet<Cell> TooFar;
   llvm::DenseMap<Cell, llvm::SmallVector<const llvm::Value *, 2>> Stored;
   llvm::DenseMap<Cell, llvm::SmallSetVector<Cell, 1>> CopiedFrom;
 };

@@ -69,7 +69,8 @@ markSmallLibraryFunctions(Module &M, const Options &Opts,
   return Marked;
 }
 
-/// Inlines the functions \p Marked and promotes locals to values.
+/// Inlines the functions \p Marked, and others that must be inlined, and
+/// promotes locals to values.
 static void inlineMarked(Module &M, ArrayRef<WeakVH> Marked) {
   // It has managers of its own: no other pass sees the module, a copy, and it
   // is changed before it is analysed.
@@ -113,18 +114,24 @@ static void takeAtomicsApart(Module &M) {
     }
 }
 
+/// Only in unreachable code may a value be computed from itself; following such
+/// a value back would never end.
+static void removeUnreachable(Module &M) {
+  for (Function &F : definedFunctions(M))
+    EliminateUnreachableBlocks(F);
+}
+
 /// Makes \p M ready for the analysis.
 static void prepare(Module &M, const Options &Opts,
                     std::shared_ptr<const Rules> Tables) {
   takeAtomicsApart(M);
-  // Only in unreachable code may a value be computed from itself; following
-  // such a value back would never end.
-  for (Function &F : definedFunctions(M))
-    EliminateUnreachableBlocks(F);
+  removeUnreachable(M);
   const RuleMatches Known(std::move(Tables), M);
   exposeHeldNumbers(M, Known);
   SmallVector<WeakVH, 0> Marked = markSmallLibraryFunctions(M, Opts, Known);
   inlineMarked(M, Marked);
+  // What follows the call of a function that always throws.
+  removeUnreachable(M);
   for (const WeakVH &F : Marked)
     if (F)
       cast<Function>(F)->removeFnAttr(Attribute::AlwaysInline);

@@ -18,8 +18,8 @@ void AccessBuilder::addWrite(Instruction &I, const Location &L) {
   R.PartWrites.push_back({&I, L});
 }
 
-/// \p Call writes any part of the object at \p L.
-void AccessBuilder::addPartWrite(CallBase &Call, const Location &L) {
+/// \p Call may write any part of the object at \p L.
+void AccessBuilder::addHanded(CallBase &Call, const Location &L) {
   addWrite(Call, L);
   R.HandedIndex.add(R.Handed.size(), L);
   R.Handed.push_back({&Call, L});
@@ -168,7 +168,7 @@ void AccessBuilder::fileCall(CallBase &Call) {
       if (Global && Global->isConstant())
         continue;
       if (Opaque)
-        addPartWrite(Call, L);
+        addHanded(Call, L);
       else
         addWrite(Call, L);
     }
@@ -196,9 +196,11 @@ void AccessBuilder::fileAccesses() {
       } else if (auto *Copy = dyn_cast<MemTransferInst>(&I)) {
         addCopy(I, Pointers.covered(*Copy, Copy->getRawDest()),
                 Pointers.covered(*Copy, Copy->getRawSource()));
-      } else if (auto *Fill = dyn_cast<MemSetInst>(&I)) {
+      } else if (auto *Fill = dyn_cast<MemSetInst>(&I);
+                 Fill && !isa<Constant>(Fill->getLength())) {
+        // With a constant length it is how a compiler writes initial zeros.
         for (const Location &L : Pointers.covered(*Fill, Fill->getRawDest()))
-          addPartWrite(*Fill, L);
+          addHanded(*Fill, L);
       } else if (auto *Call = dyn_cast<CallBase>(&I);
                  Call && !isa<IntrinsicInst>(Call)) {
         fileCall(*Call);

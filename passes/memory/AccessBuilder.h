@@ -28,7 +28,7 @@ public:
 
 private:
   void addWrite(llvm::Instruction &I, const Location &L);
-  void addPartWrite(llvm::CallBase &Call, const Location &L);
+  void addHanded(llvm::CallBase &Call, const Location &L);
   void addCopy(llvm::Instruction &I, Locations To, Locations From);
   void putInto(llvm::CallBase &Call);
   void fileReplacing(llvm::CallBase &Call, const llvm::Value *Pointer);

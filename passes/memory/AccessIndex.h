@@ -21,8 +21,8 @@
 
 namespace tpc {
 
-/// A load, a store, a copy of a whole object, or a call that gets a pointer to
-/// the object and whose body is not known.
+/// A load, a store, a copy of a whole object, a memset, or a call that gets a
+/// pointer to the object and whose body is not known.
 struct Access {
   llvm::Instruction *I;
   Location Where;
@@ -52,8 +52,8 @@ public:
   template <typename Set> struct Found {
     Set Own, Copied;
   };
-  /// The writes that can give the variable at \p L its value: stores, and calls
-  /// without a body that get a pointer to it.
+  /// The writes that can give the variable at \p L its value: stores, memset,
+  /// and calls without a body that get a pointer to it.
   Found<Writes> writesOf(const Location &L);
   /// The loads that can read the value of the variable at \p L.
   Found<Reads> readsOf(const Location &L);
@@ -103,7 +103,8 @@ private:
   const Aliases &Alias;
   LocationTypes &Types;
   llvm::SmallVector<Access, 0> Loads, Stores;
-  llvm::SmallVector<Access, 0> Handed; ///< calls without a known body
+  llvm::SmallVector<Access, 0>
+      Handed; ///< memset, and calls without a known body
   llvm::SmallVector<Copy, 0> Copies;
   llvm::SmallVector<CopyEnd, 0> Targets, Sources;
   /// Cached results: the variables that copies connect with a variable.

@@ -49,7 +49,7 @@ public:
   Locations handed(const llvm::Value *Pointer, bool IsOne);
 
   /// What \p I, memcpy, memmove or memset, reads or writes at \p Pointer: one
-  /// element of an array if it is no larger than that.
+  /// element of an array if it covers no more than that.
   Locations covered(const llvm::MemIntrinsic &I, const llvm::Value *Pointer);
 
   /// What \p I, a load or store, touches: a scalar, or all scalars of the

@@ -18,9 +18,9 @@ class VisibleWrites {
 public:
   VisibleWrites(llvm::Module &M, llvm::ModuleAnalysisManager &AM);
 
-  /// The writes that can give \p Load its value: stores, and calls without a
-  /// body that get a pointer to the variable. Copies of whole objects are
-  /// followed.
+  /// The writes that can give \p Load its value: stores, memset, and calls
+  /// without a body that get a pointer to the variable. Copies of whole objects
+  /// are followed.
   llvm::ArrayRef<llvm::Instruction *> definitionsOf(const llvm::LoadInst &Load);
 
   /// The loads that can read the value that \p Write, a store or call, writes

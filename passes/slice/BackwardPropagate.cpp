@@ -320,7 +320,8 @@ void Slicer::enterDerived(const Value *Pointer, bool IntoCallees) {
     const auto *Call = dyn_cast<CallBase>(I);
     if (isa<GetElementPtrInst>(I))
       enterDerived(I, IntoCallees);
-    else if (IsStoredTo || isa<MemIntrinsic>(I))
+    else if (IsStoredTo || isa<MemTransferInst>(I) ||
+             (isa<MemSetInst>(I) && !Settled.contains(I)))
       enter(I, Gives, Why::Writes);
     else if (Call && !isa<IntrinsicInst>(I) && !Settled.contains(I) &&
              !endsLife(*Call)) {
@@ -418,8 +419,11 @@ void Slicer::enterOperands(Instruction &I) {
     for (Instruction *Write : Writes.definitionsOf(*Load)) {
       // A constant that library code stores is stored in its constructors.
       const auto *Store = dyn_cast<StoreInst>(Write);
-      if (!Store || !isa<Constant>(Store->getValueOperand()) ||
-          Sources.has(*Write->getFunction()))
+      const auto *Fill = dyn_cast<MemSetInst>(Write);
+      const Value *V = Store  ? Store->getValueOperand()
+                       : Fill ? Fill->getValue()
+                              : nullptr;
+      if (!V || !isa<Constant>(V) || Sources.has(*Write->getFunction()))
         enter(Write, Gives, Why::Writes);
     }
     return enterPointer(Load->getPointerOperand());

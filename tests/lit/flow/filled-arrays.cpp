@@ -16,6 +16,15 @@ struct Grid {
         Size(Size) {}
 };
 
+// The zeros that a compiler writes first are no value of their own.
+void compareZeroed(ros::NodeHandle &Handle, ros::Publisher &Out, double Value) {
+  double Limits[4] = {};
+  Handle.param("zeroed", Limits[2], 1.0);
+  // CHECK-DAG: parameter 'zeroed' relation > as x distance 1 {{.*}} at [[#@LINE+1]]:13
+  if (Value > Limits[2])
+    Out.publish(std_msgs::Number());
+}
+
 struct Node {
   bool Unknown;
   double Limit, Farther;
@@ -53,6 +62,7 @@ void Node::step(unsigned I) {
 int main(int Arguments, char **) {
   ros::NodeHandle Handle;
   Node N(Handle, Arguments);
+  compareZeroed(Handle, N.Out, Arguments);
   N.reset(Arguments);
   N.step(1);
 }
