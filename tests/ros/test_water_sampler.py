@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import Counter
-from statistics import median_low
 
 import pytest
 from flown import Fly, expected, flights, found, need_cpp_half
@@ -87,9 +86,9 @@ def test_one_ranking_names_the_parameter_of_either_language(fly, name):
     assert mission.judged
     positions = [r.position_of(mission.treatment.parameter) for r in mission.judged]
     assert None not in positions
-    # At most marks: the seconds that count at the first hold the flight to the tank, too, and at
-    # the last the flight back, as many of them as the observer was slow.
-    assert median_low(positions) <= FIRST
+    # The seconds that count may hold the flight to the tank at the first of several marks, and the
+    # flight back at the last of many.
+    assert max(positions[1:-1] or positions[1:] or positions) <= FIRST
 
 
 @pytest.mark.parametrize(("name", "kind"), [("fault_dip_depth", "II"), ("fault_pump_flow", "I")])
