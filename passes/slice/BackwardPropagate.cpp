@@ -401,6 +401,14 @@ void Slicer::enterReachable(CallBase &Call) {
   }
 }
 
+/// The value that \p I, a store or memset, writes; null for other writes.
+static const Value *valueWrittenBy(const Instruction &I) {
+  if (const auto *Fill = dyn_cast<MemSetInst>(&I))
+    return Fill->getValue();
+  const auto *Store = dyn_cast<StoreInst>(&I);
+  return Store ? Store->getValueOperand() : nullptr;
+}
+
 void Slicer::enterOperands(Instruction &I) {
   if (auto *Phi = dyn_cast<PHINode>(&I))
     return enterMerge(*Phi);
@@ -418,12 +426,8 @@ void Slicer::enterOperands(Instruction &I) {
         enter(Copy, Runs, Why::Writes);
     for (Instruction *Write : Writes.definitionsOf(*Load)) {
       // A constant that library code stores is stored in its constructors.
-      const auto *Store = dyn_cast<StoreInst>(Write);
-      const auto *Fill = dyn_cast<MemSetInst>(Write);
-      const Value *V = Store  ? Store->getValueOperand()
-                       : Fill ? Fill->getValue()
-                              : nullptr;
-      if (!V || !isa<Constant>(V) || Sources.has(*Write->getFunction()))
+      if (!isa_and_nonnull<Constant>(valueWrittenBy(*Write)) ||
+          Sources.has(*Write->getFunction()))
         enter(Write, Gives, Why::Writes);
     }
     return enterPointer(Load->getPointerOperand());
