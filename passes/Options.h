@@ -72,9 +72,9 @@ public:
   /// True if \p F is user code; false without debug information.
   bool has(const llvm::Function &F);
   bool has(const llvm::DILocation *Loc);
+  bool has(const llvm::DIFile *File);
 
 private:
-  bool has(const llvm::DIFile *File);
   const Options &Opts;
   llvm::DenseMap<const llvm::DIFile *, bool> Known;
 };

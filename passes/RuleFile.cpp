@@ -262,10 +262,15 @@ Error Reader::overriding(const json::Value &V, StringRef Place, RuleFile &Out) {
   std::vector<std::string> Profiles;
   for (StringRef Key : keysOf(*Keys)) {
     std::string At = (Place + "/" + Key).str();
-    if (Key != "except" && Key != "profiles")
+    std::vector<std::string> *Names =
+        StringSwitch<std::vector<std::string> *>(Key)
+            .Case("except", &Out.KeptOverrides)
+            .Case("tools", &Out.Tools)
+            .Case("profiles", &Profiles)
+            .Default(nullptr);
+    if (!Names)
       return wrong(At, "is not a key of \"overriding\"");
-    if (Error E = texts(*Keys->get(Key), At,
-                        Key == "except" ? Out.KeptOverrides : Profiles))
+    if (Error E = texts(*Keys->get(Key), At, *Names))
       return E;
   }
   // A user's file that only adds exceptions switches nothing on.

@@ -19,7 +19,7 @@ struct RuleFile {
   /// Functions that override one of another library expose something, but not
   /// those of classes that begin with one of these names.
   bool ShowsOverrides = false;
-  std::vector<std::string> KeptOverrides;
+  std::vector<std::string> KeptOverrides, Tools;
 };
 
 /// The rows of \p Text that belong to \p Profile. \p Origin is the file name

@@ -51,6 +51,7 @@ Expected<Rules> Rules::load(const Options &Opts) {
     append_range(R.CountingPrefixes, File->Counting);
     append_range(R.SilentPrefixes, File->Silent);
     append_range(R.KeptOverrides, File->KeptOverrides);
+    append_range(R.Tools, File->Tools);
     R.ShowsOverrides |= File->ShowsOverrides;
     R.ContainerClasses.insert(File->ContainerClasses.begin(),
                               File->ContainerClasses.end());
@@ -92,6 +93,10 @@ bool Rules::isSilent(StringRef Name) const {
 
 bool Rules::keepsOverrides(StringRef Class) const {
   return beginsWithOneOf(className(Class), KeptOverrides);
+}
+
+bool Rules::isTool(StringRef Class) const {
+  return beginsWithOneOf(Class, Tools);
 }
 
 RuleTables RuleTableAnalysis::run(Module &M, ModuleAnalysisManager &AM) {

@@ -136,13 +136,16 @@ public:
   bool showsOverrides() const { return ShowsOverrides; }
   /// True if those of the class with the mangled name \p Class do not.
   bool keepsOverrides(llvm::StringRef Class) const;
+  /// True if an object of the class with the qualified name \p Class is a tool
+  /// that an overriding function is handed, not a part of the robot.
+  bool isTool(llvm::StringRef Class) const;
 
 private:
   const Rule *rowOf(const llvm::Function &F, llvm::StringRef Name) const;
 
   llvm::StringMap<std::vector<Rule>> ByName;
   std::vector<std::string> OpaquePrefixes, KeptPrefixes, CountingPrefixes,
-      SilentPrefixes, KeptOverrides;
+      SilentPrefixes, KeptOverrides, Tools;
   bool ShowsOverrides = false;
   llvm::StringSet<> ContainerClasses, ReadingMethods, Transparent;
   /// Cached by mangled name, so that each name is demangled once.
@@ -196,6 +199,7 @@ public:
   bool keepsOverrides(llvm::StringRef Class) const {
     return Tables->keepsOverrides(Class);
   }
+  bool isTool(llvm::StringRef Class) const { return Tables->isTool(Class); }
   /// See Rules::isTransparent; works for inlined functions too.
   bool isTransparent(const llvm::DISubprogram &F) const {
     return inlined(F).Transparent;

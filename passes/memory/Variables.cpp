@@ -64,9 +64,8 @@ std::string VariableNames::fullNameOf(const Location &L) const {
   }
   if (Field.empty())
     return rootName(L.Root);
-  // ROS messages are typedefs of `Name_<Allocator>`.
-  auto [Plain, Arguments] = Class->getName().split('<');
-  if (!Arguments.empty())
+  StringRef Plain = Class->getName().split('<').first;
+  if (isMessageClass(*Class))
     Plain.consume_back("_");
   return Plain.empty() ? Field.str() : (Plain + "::" + Field).str();
 }

@@ -21,7 +21,10 @@ VisibleWrites::VisibleWrites(Module &M, ModuleAnalysisManager &AM)
       Accesses(AM.getResult<ClassObjectAccess>(M)),
       Locals(M, AM.getResult<RuleAnalysis>(M), Types, Pointers, Accesses),
       Shared(M, AM.getResult<SimpleCallGraph>(M), AM.getResult<Throws>(M),
-             AM.getResult<DebugTypesAnalysis>(M), Accesses.replacements()) {}
+             AM.getResult<DebugTypesAnalysis>(M), Accesses.replacements()),
+      Messages(M, AM.getResult<SimpleCallGraph>(M),
+               AM.getResult<DebugTypesAnalysis>(M), Types, Pointers,
+               UserSources(AM.getResult<OptionsAnalysis>(M))) {}
 
 /// The writes of \p L, including those through copies of whole objects.
 VisibleWrites::Writes VisibleWrites::allWrites(const Location &L) {
@@ -101,7 +104,7 @@ VisibleWrites::sharedWrites(const Location &L) {
 
 bool VisibleWrites::isSharedBy(const Location &L, const Instruction &At,
                                const Value *Pointer) {
-  if (isLocalOf(L, At))
+  if (isLocalOf(L, At) || Messages.has(Pointer))
     return false;
   const SharedWrites &All = sharedWrites(L);
   return All.TooMany ||
@@ -119,6 +122,11 @@ SmallVector<Instruction *, 8> VisibleWrites::writesOf(const Location &L,
              !Shared.reaches(*Write, writtenBy(*Write, L), At,
                              Reaching::anywhereIn(*L.Root));
     });
+    return All.takeVector();
+  }
+  if (Messages.has(Pointer)) {
+    Writes All = allWrites(L);
+    All.remove_if([&](Instruction *W) { return !Messages.isWrittenBy(*W); });
     return All.takeVector();
   }
   const SharedWrites &All = sharedWrites(L);
@@ -167,7 +175,8 @@ SmallVector<LoadInst *, 8> VisibleWrites::usesOf(const Instruction &Write,
     All.insert(Copied.begin(), Copied.end());
   }
   All.remove_if([&](LoadInst *Load) {
-    return isa<AllocaInst>(getUnderlyingObject(Load->getPointerOperand())) &&
+    const Value *From = Load->getPointerOperand();
+    return (isa<AllocaInst>(getUnderlyingObject(From)) || Messages.has(From)) &&
            !is_contained(definitionsOf(*Load), &Write);
   });
   return All.takeVector();
@@ -228,6 +237,8 @@ SmallVector<Instruction *, 8> VisibleWrites::writesInto(const Location &L,
     Parts = replacedParts(L, At, Pointer);
   // For each part, the last write before \p At counts.
   auto Stays = [&](const Instruction &Write, const Location &Where) {
+    if (Messages.has(Pointer))
+      return Messages.isWrittenBy(Write);
     if (!Local) {
       auto Way = Alias.partOf(L, Where);
       auto *It = find_if(Parts, [&](const Part &P) {

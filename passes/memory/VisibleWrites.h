@@ -11,6 +11,7 @@
 
 #include "memory/LocalWrites.h"
 #include "memory/Reaching.h"
+#include "memory/Received.h"
 
 namespace tpc {
 
@@ -49,6 +50,11 @@ public:
   /// write of it is replaced before others can see it.
   bool isSharedBy(const Location &L, const llvm::Instruction &At,
                   const llvm::Value *Pointer);
+
+  /// True if another process filled what \p Pointer leads to.
+  bool isReceived(const llvm::Value *Pointer) const {
+    return Messages.has(Pointer);
+  }
 
   /// True if \p Call always gives the object at \p Pointer a new value.
   bool replaces(const llvm::CallBase &Call, const llvm::Value *Pointer) const;
@@ -90,6 +96,7 @@ private:
   AccessIndex &Accesses;
   LocalWrites Locals;
   Reaching Shared;
+  Received Messages;
   /// Cached results.
   llvm::DenseMap<const llvm::LoadInst *,
                  std::unique_ptr<llvm::SmallVector<llvm::Instruction *, 8>>>

@@ -225,8 +225,9 @@ void Slicer::enterMemory(const Value *Pointer, const Instruction &At) {
     if (Writes.isSharedBy(L, At, Pointer) && !SeenWritten.insert(L).second)
       continue;
     // The writes include what was copied there; that it was copied matters too.
-    for (Instruction *Copy : Accesses.copiesTo(L, CopiedClasses))
-      enter(Copy, Runs, Why::Writes);
+    if (!Writes.isReceived(Pointer))
+      for (Instruction *Copy : Accesses.copiesTo(L, CopiedClasses))
+        enter(Copy, Runs, Why::Writes);
     for (Instruction *Write : Writes.writesOf(L, At, Pointer))
       enter(Write, Gives, Why::Writes);
   }
@@ -311,8 +312,15 @@ void Slicer::enterDerived(const Value *Pointer, bool IntoCallees) {
     return;
   for (const Use &U : Pointer->uses()) {
     auto *I = dyn_cast<Instruction>(U.getUser());
-    if (!I || Accesses.isUnchanged(U))
+    if (!I)
       continue;
+    if (Accesses.isUnchanged(U)) {
+      // A const method may give access to what the object points to.
+      if (const auto *Call = dyn_cast<CallBase>(I);
+          Call && Call->getType()->isPointerTy() && containerOf(*Call) == U)
+        enterDerived(Call, IntoCallees);
+      continue;
+    }
     // A store into a local object is found by its place.
     const auto *Store = dyn_cast<StoreInst>(I);
     bool IsStoredTo = Store && Store->getPointerOperand() == Pointer &&
@@ -421,9 +429,10 @@ void Slicer::enterOperands(Instruction &I) {
     if (!New)
       return enterPointer(Load->getPointerOperand());
     // The definitions include what is copied; that it is copied matters too.
-    for (const Location &L : Pointers.touched(*Load))
-      for (Instruction *Copy : Accesses.copiesTo(L, CopiedClasses))
-        enter(Copy, Runs, Why::Writes);
+    if (!Writes.isReceived(Load->getPointerOperand()))
+      for (const Location &L : Pointers.touched(*Load))
+        for (Instruction *Copy : Accesses.copiesTo(L, CopiedClasses))
+          enter(Copy, Runs, Why::Writes);
     for (Instruction *Write : Writes.definitionsOf(*Load)) {
       // A constant that library code stores is stored in its constructors.
       if (!isa_and_nonnull<Constant>(valueWrittenBy(*Write)) ||

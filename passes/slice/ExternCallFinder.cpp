@@ -4,7 +4,7 @@
 #include "memory/PointsTo.h"
 #include "memory/Variables.h"
 #include "params/Texts.h"
-#include "slice/Overriding.h"
+#include "slice/KeptObjects.h"
 #include "support/Names.h"
 #include "support/Print.h"
 
@@ -116,7 +116,12 @@ ExternCallFinder::Result ExternCallFinder::run(Module &M,
                           AM.getResult<OptionsAnalysis>(M));
   for (Function *F : Overriding.Functions)
     addGivenBack(*F, R);
-  for (InheritedWrite &W : inheritedWrites(M, Overriding)) {
+  SmallVector<InheritedWrite, 0> Writes = inheritedWrites(M, Overriding);
+  Writes.append(keptObjectWrites(
+      M, AM.getResult<SimpleCallGraph>(M), Rules,
+      AM.getResult<DebugTypesAnalysis>(M), Overriding,
+      UserSources(AM.getResult<OptionsAnalysis>(M))));
+  for (InheritedWrite &W : Writes) {
     std::string Name = qualifiedName(linkageName(*W.I->getFunction()));
     std::string Topic = (unscoped(Name) + " -> " + W.Class).str();
     R.push_back({W.I, std::move(Name), std::move(Topic)});

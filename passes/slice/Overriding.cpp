@@ -180,6 +180,22 @@ OverridingFunctions overridingFunctions(Module &M, const CallGraphResult &Calls,
   return Found;
 }
 
+std::string scopeOf(const Function &F) {
+  return StringRef(qualifiedName(linkageName(F))).rsplit("::").first.str();
+}
+
+const Argument *objectOf(const Function &F) {
+  const DISubprogram *SP = F.getSubprogram();
+  const unsigned N = F.hasStructRetAttr() ? 1 : 0;
+  if (!SP || !SP->getType() || N >= F.arg_size())
+    return nullptr;
+  // Before the parameters stands the result.
+  DITypeRefArray Types = SP->getType()->getTypeArray();
+  const bool HasObject =
+      Types.size() > 1 && Types[1] && Types[1]->isArtificial();
+  return HasObject ? F.getArg(N) : nullptr;
+}
+
 SmallVector<const Argument *, 4> writtenArguments(const Function &F) {
   SmallVector<const Argument *, 4> Written;
   SmallVector<std::string, 4> Types = parameterTypes(F);
@@ -220,9 +236,6 @@ public:
         Names.insert(scopeOf(F));
   }
 
-  static std::string scopeOf(const Function &F) {
-    return StringRef(qualifiedName(linkageName(F))).rsplit("::").first.str();
-  }
   bool has(StringRef Class) const { return Names.contains(Class); }
 
 private:
@@ -230,19 +243,6 @@ private:
 };
 
 } // namespace
-
-/// `this` of \p F; null if it has none, as in a static method.
-static const Argument *objectOf(const Function &F) {
-  const DISubprogram *SP = F.getSubprogram();
-  const unsigned N = F.hasStructRetAttr() ? 1 : 0;
-  if (!SP || !SP->getType() || N >= F.arg_size())
-    return nullptr;
-  // Before the parameters stands the result.
-  DITypeRefArray Types = SP->getType()->getTypeArray();
-  const bool HasObject =
-      Types.size() > 1 && Types[1] && Types[1]->isArtificial();
-  return HasObject ? F.getArg(N) : nullptr;
-}
 
 /// The class of another library in whose part of the object \p This
 /// \p Pointer lies, or in an array that this part points to; empty if it lies
@@ -290,7 +290,7 @@ static std::string inheritedObject(const CallBase &Call, const Argument *This,
       return "";
     Object = GEP->getPointerOperand();
   }
-  std::string Class = OwnClasses::scopeOf(*Callee);
+  std::string Class = scopeOf(*Callee);
   if (Object != This || Own.has(Class))
     return "";
   return Class;
@@ -301,12 +301,12 @@ inheritedWrites(Module &M, const OverridingFunctions &Overriding) {
   SmallVector<InheritedWrite, 0> Found;
   StringSet<> Derived;
   for (const Function *F : Overriding.Functions)
-    Derived.insert(OwnClasses::scopeOf(*F));
+    Derived.insert(scopeOf(*F));
   if (Derived.empty())
     return Found;
   const OwnClasses Own(M, Overriding.Bases);
   for (Function &F : definedFunctions(M)) {
-    const std::string Class = OwnClasses::scopeOf(F);
+    const std::string Class = scopeOf(F);
     StringRef Method = F.getSubprogram() ? F.getSubprogram()->getName() : "";
     // What a constructor sets is not seen before it ends.
     const Argument *This = objectOf(F);

@@ -254,8 +254,11 @@ const DIType *DebugTypes::ofArgument(const Argument &Arg) const {
   // numbers do not match.
   if (Types.size() == 0 || F->arg_size() - Hidden != Types.size() - 1)
     return nullptr;
-  const DIType *T = Types[Arg.getArgNo() - Hidden + 1];
-  return Arg.hasByValAttr() ? plain(T) : dereferenced(T);
+  const DIType *T = plain(Types[Arg.getArgNo() - Hidden + 1]);
+  // An object that cannot be copied byte by byte is passed by its address.
+  bool IsObject = Arg.hasByValAttr() ||
+                  (T && (T->getFlags() & DINode::FlagTypePassByReference));
+  return IsObject ? T : dereferenced(T);
 }
 
 const DIType *DebugTypes::ofElement(const GEPOperator &GEP) {

@@ -290,6 +290,11 @@ StringRef plainClassName(const StructType &T) {
   return Name;
 }
 
+bool isMessageClass(const DICompositeType &Class) {
+  auto [Name, Arguments] = Class.getName().split('<');
+  return Name.ends_with("_") && Arguments.starts_with("std::allocator<");
+}
+
 std::string uuidOf(StringRef Name) {
   static constexpr uint8_t Namespace[16] = {0x6b, 0x0f, 0x7a, 0x52, 0x2c, 0x9e,
                                             0x4d, 0x61, 0x9a, 0x37, 0x8f, 0x15,

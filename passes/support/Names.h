@@ -90,6 +90,10 @@ std::string uuidOf(llvm::StringRef Name);
 /// the suffix that distinguishes copies of one class.
 llvm::StringRef plainClassName(const llvm::StructType &T);
 
+/// True for the class of a ROS message, which its generator makes a template
+/// over the allocator: `Pose_<std::allocator<void>>`.
+bool isMessageClass(const llvm::DICompositeType &Class);
+
 } // namespace tpc
 
 #endif // TPC_NAMES_H

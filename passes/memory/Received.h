@@ -1,0 +1,60 @@
+//===- Received.h - Memory that other processes filled --------------------===//
+//
+// A callback gets a message, and a service its request, from another process.
+// Such an object is one of its own: it is none of those of the same class that
+// the link unit makes itself. Only what is written through a pointer to it,
+// which few callbacks do, can be read through such a pointer.
+//
+// Pointers to it are arguments of callbacks that are messages, or smart
+// pointers to them, and what is computed and loaded from those, also in the
+// functions that only get such pointers. Found as the largest set that supports
+// itself among the pointers that can be reached from the callbacks, so that
+// iterators in loops belong to it.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_RECEIVED_H
+#define TPC_RECEIVED_H
+
+#include "Options.h"
+#include "memory/PointsTo.h"
+#include "support/DebugTypes.h"
+
+#include "llvm/ADT/DenseSet.h"
+#include "llvm/ADT/SetVector.h"
+
+namespace tpc {
+
+class CallGraphResult;
+
+class Received {
+public:
+  Received(llvm::Module &M, const CallGraphResult &Calls, DebugTypes &Debug,
+           const LocationTypes &Types, PointsTo &Pointers,
+           UserSources Sources);
+
+  /// True if \p Pointer, where it is not null, only leads to what other
+  /// processes filled.
+  bool has(const llvm::Value *Pointer) const;
+  /// True if \p Write, a store, copy or call, can write to such memory by a
+  /// pointer to it.
+  bool isWrittenBy(const llvm::Instruction &Write) const;
+
+private:
+  bool isHandedOver(const llvm::Argument &Arg);
+  bool isOwn(const Location &L);
+  bool handsOver(const llvm::CallBase &Call, unsigned N);
+  void addUsersOf(const llvm::Value *Pointer);
+  bool isSupported(const llvm::Value *Pointer);
+
+  const CallGraphResult &Calls;
+  DebugTypes &Debug;
+  const LocationTypes &Types;
+  PointsTo &Pointers;
+  UserSources Sources;
+  /// Arguments, phis, selects and loads; all others are computed from those.
+  llvm::SmallSetVector<const llvm::Value *, 16> Found;
+};
+
+} // namespace tpc
+
+#endif // TPC_RECEIVED_H
