@@ -88,7 +88,7 @@ std::optional<SmallVector<Step, 4>> Aliases::partOf(const Location &Object,
       return SmallVector<Step, 4>(Path.drop_front(K));
   }
   if (!L.Root && !Path.empty() &&
-      Types.contains(Types.typeAt(Object), Path[0].Type))
+      Types.contains(Object, Path[0]))
     return SmallVector<Step, 4>(Path);
   return std::nullopt;
 }

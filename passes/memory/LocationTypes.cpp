@@ -305,6 +305,13 @@ void LocationTypes::addClassesIn(Type *T, SmallSetVector<unsigned, 8> &Out) {
     addClassesIn(Field, Out);
 }
 
+bool LocationTypes::contains(const Location &Outer, const Step &Inner) {
+  // LLVM's types only have the layout, which classes share.
+  return contains(typeAt(Outer), Inner.Type) &&
+         Debug.mayContain(debugTypeAt(Outer), Inner.Class);
+}
+
+/// True if the layout of the class number \p Inner is \p Outer, or in it.
 bool LocationTypes::contains(Type *Outer, unsigned Inner) {
   auto *T = dyn_cast_or_null<StructType>(elementOf(Outer));
   if (!T || T->isOpaque())

@@ -56,8 +56,9 @@ public:
   bool isAlike(llvm::Type *A, llvm::Type *B);
   /// Adds the numbers of the classes in an object of type \p T.
   void addClassesIn(llvm::Type *T, llvm::SmallSetVector<unsigned, 8> &Out);
-  /// True if the class \p Inner is \p Outer, or in it.
-  bool contains(llvm::Type *Outer, unsigned Inner);
+  /// True if the class that \p Inner leads into can be that of the object at
+  /// \p Outer, or of a part of it.
+  bool contains(const Location &Outer, const Step &Inner);
 
   /// Moves \p L from an array to its first element.
   void enterElement(Location &L) const;
@@ -86,6 +87,7 @@ public:
   void print(llvm::raw_ostream &OS, const Location &L) const;
 
 private:
+  bool contains(llvm::Type *Outer, unsigned Inner);
   void findClassesOfGlobals(const llvm::Module &M);
   const llvm::DIType *debugTypeAt(const Location &L) const;
   void enterField(Location &L, llvm::StructType *T, unsigned Field);

@@ -3,6 +3,7 @@
 
 #include "support/Budget.h"
 #include "support/Functions.h"
+#include "support/Names.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/ADT/Statistic.h"
@@ -299,22 +300,30 @@ bool PointsToSolver::findsComplete(const Node &Load) const {
   return Stored;
 }
 
+/// True if only the calls that are known pass objects of this module for
+/// \p Arg. Other libraries can call a function that is exported too. To an inline
+/// function of a library, and to a function that this module calls itself, they
+/// pass objects of their own. `this` of an exported method is another matter:
+/// who calls it may have made the object with a function of this module.
+bool PointsToSolver::hasOwnCallers(const Argument &Arg) {
+  const Function &F = *Arg.getParent();
+  if (!Calls.allCallsKnown(F))
+    return false;
+  return F.hasLocalLinkage() || M.getFunction("main") ||
+         (F.isWeakForLinker() && !R.Sources.has(F)) ||
+         (F.getSubprogram() && thisOf(F) != &Arg);
+}
+
 /// Arguments lead only to what the calls pass if all calls are known; phis lead
 /// only to their operands. An allocation is known by its class alone. True if a
 /// pointer that counted as complete no longer does.
 bool PointsToSolver::findComplete() {
   bool First = !std::exchange(Assumed, true);
   if (First) {
-    bool IsProgram = M.getFunction("main");
     for (const Node &N : Nodes) {
-      bool Candidate =
-          isa<PHINode>(N.V) || isa<SelectInst>(N.V) || isa<LoadInst>(N.V);
-      if (const auto *Arg = dyn_cast<Argument>(N.V)) {
-        const Function *F = Arg->getParent();
-        Candidate = !N.Sources.empty() && Calls.allCallsKnown(*F) &&
-                    (F->hasLocalLinkage() || IsProgram);
-      }
-      if (Candidate)
+      const auto *Arg = dyn_cast<Argument>(N.V);
+      if (Arg ? !N.Sources.empty() && hasOwnCallers(*Arg)
+              : N.Container || isa<PHINode, SelectInst, LoadInst>(N.V))
         R.Complete.insert(N.V);
     }
   }
@@ -330,6 +339,7 @@ bool PointsToSolver::findComplete() {
       if (!R.Complete.contains(N.V) ||
           (R.Targets.lookup(N.V).size() < MaxLocations &&
            (!isa<LoadInst>(N.V) || First || findsComplete(N)) &&
+           (!N.Container || isComplete(N.Container, R.Complete)) &&
            all_of(N.Sources, [&](const Value *Source) {
              return isComplete(Source, R.Complete);
            })))

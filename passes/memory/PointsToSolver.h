@@ -64,6 +64,7 @@ private:
   void addReturned(const llvm::CallBase &Call, Node &N);
   void findFilled();
   bool findsComplete(const Node &Load) const;
+  bool hasOwnCallers(const llvm::Argument &Arg);
   bool findComplete();
   unsigned contentAt(const Location &L, bool Unrooted);
   void collect(unsigned Number, Locations &Out);

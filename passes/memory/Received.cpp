@@ -60,7 +60,6 @@ Received::Received(Module &M, const CallGraphResult &Calls, DebugTypes &Debug,
     addUsersOf(Found[N]);
   while (Found.remove_if([&](const Value *V) { return !isSupported(V); }))
     ;
-  if (getenv("TPC_DBG")) for (const Value *V : Found) { errs() << "RECV "; if (auto *A = dyn_cast<Argument>(V)) errs() << "arg " << A->getArgNo() << " of " << A->getParent()->getName() << "\n"; else errs() << *V << " in " << cast<Instruction>(V)->getFunction()->getName() << "\n"; }
 }
 
 /// True if \p Arg is a message that a library hands to the program.

@@ -38,7 +38,7 @@ public:
         Reads(AM.getResult<ParamCallFinder>(M)),
         Rules(AM.getResult<RuleAnalysis>(M)),
         Names(AM.getResult<LocationTypesAnalysis>(M)),
-        Texts(M, Pointers, Accesses, Rules) {}
+        Texts(M, Pointers, Accesses, Writes, Rules) {}
 
   ParameterUsage run();
 

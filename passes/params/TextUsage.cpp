@@ -21,25 +21,30 @@ static cl::opt<unsigned>
                cl::desc("Objects that one text is copied to"));
 
 TextUsage::TextUsage(Module &M, PointsTo &Pointers, AccessIndex &Accesses,
-                     const RuleMatches &Rules)
+                     const VisibleWrites &Writes, const RuleMatches &Rules)
     : Pointers(Pointers), Accesses(Accesses) {
+  // What is in a received message is no parameter of this program.
+  auto IsOwn = [&](const Value *Pointer) {
+    return Pointer && Pointer->getType()->isPointerTy() &&
+           !Writes.isReceived(Pointer);
+  };
   forEachCall(M, Rules, Rule::Text, [&](CallBase &Call, const Rule &Row) {
     Use U{&Call, &Row, {}};
     for (unsigned N = 0; N < std::min(2U, Call.arg_size()); ++N)
       U.Operands.push_back(
-          Call.getArgOperand(N)->getType()->isPointerTy()
+          IsOwn(Call.getArgOperand(N))
               ? Pointers.handed(Call.getArgOperand(N), /*IsOne=*/true)
               : Locations());
     Uses.push_back(std::move(U));
   });
   forEachCall(M, Rules, Rule::Held, [&](CallBase &Call, const Rule &Row) {
-    if (Row.Relation == "outof")
+    if (Row.Relation == "outof" && IsOwn(objectOf(Call, Row)))
       Numbers.push_back(
           {&Call, Pointers.handed(objectOf(Call, Row), /*IsOne=*/true)});
   });
   forEachCall(M, Rules, Rule::Property, [&](CallBase &Call, const Rule &Row) {
     Property P{&Call, &Row, {}};
-    if (const Value *List = objectOf(Call, Row))
+    if (const Value *List = objectOf(Call, Row); IsOwn(List))
       Pointers.addElements(List, P.Elements);
     Properties.push_back(std::move(P));
   });

@@ -11,8 +11,7 @@
 #define TPC_TEXTUSAGE_H
 
 #include "Rules.h"
-#include "memory/AccessIndex.h"
-#include "memory/PointsTo.h"
+#include "memory/VisibleWrites.h"
 
 namespace tpc {
 
@@ -25,7 +24,7 @@ struct TextComparison {
 class TextUsage {
 public:
   TextUsage(llvm::Module &M, PointsTo &Pointers, AccessIndex &Accesses,
-            const RuleMatches &Rules);
+            const VisibleWrites &Writes, const RuleMatches &Rules);
 
   struct Found {
     llvm::SmallVector<TextComparison, 4> Comparisons;

@@ -117,7 +117,7 @@ std::optional<Finder::Member> Finder::memberAt(const Value *Pointer) {
     Pointer = GEP->getPointerOperand();
   }
   const auto *This = dyn_cast<Argument>(Pointer);
-  if (!This || !Outermost || objectOf(*This->getParent()) != This ||
+  if (!This || !Outermost || thisOf(*This->getParent()) != This ||
       !Derived.contains(scopeOf(*This->getParent())))
     return std::nullopt;
   const auto *Index = dyn_cast<ConstantInt>(Outermost->getOperand(2));

@@ -184,18 +184,6 @@ std::string scopeOf(const Function &F) {
   return StringRef(qualifiedName(linkageName(F))).rsplit("::").first.str();
 }
 
-const Argument *objectOf(const Function &F) {
-  const DISubprogram *SP = F.getSubprogram();
-  const unsigned N = F.hasStructRetAttr() ? 1 : 0;
-  if (!SP || !SP->getType() || N >= F.arg_size())
-    return nullptr;
-  // Before the parameters stands the result.
-  DITypeRefArray Types = SP->getType()->getTypeArray();
-  const bool HasObject =
-      Types.size() > 1 && Types[1] && Types[1]->isArtificial();
-  return HasObject ? F.getArg(N) : nullptr;
-}
-
 SmallVector<const Argument *, 4> writtenArguments(const Function &F) {
   SmallVector<const Argument *, 4> Written;
   SmallVector<std::string, 4> Types = parameterTypes(F);
@@ -309,7 +297,7 @@ inheritedWrites(Module &M, const OverridingFunctions &Overriding) {
     const std::string Class = scopeOf(F);
     StringRef Method = F.getSubprogram() ? F.getSubprogram()->getName() : "";
     // What a constructor sets is not seen before it ends.
-    const Argument *This = objectOf(F);
+    const Argument *This = thisOf(F);
     if (!This || !Derived.contains(Class) || Method.empty() ||
         Method.starts_with("~") || Method == unscoped(Class))
       continue;

@@ -43,9 +43,6 @@ OverridingFunctions overridingFunctions(llvm::Module &M,
 llvm::SmallVector<const llvm::Argument *, 4>
 writtenArguments(const llvm::Function &F);
 
-/// `this` of \p F; null if it has none, as in a static method.
-const llvm::Argument *objectOf(const llvm::Function &F);
-
 /// The qualified name of the class or namespace that \p F is in.
 std::string scopeOf(const llvm::Function &F);
 

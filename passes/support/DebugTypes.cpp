@@ -94,6 +94,29 @@ const DICompositeType *DebugTypes::asStruct(const DIType *T,
   return It->second;
 }
 
+bool DebugTypes::mayContain(const DIType *T, unsigned Inner) {
+  const auto *Class = dyn_cast_or_null<DICompositeType>(element(T));
+  if (!T || !Inner)
+    return true;
+  if (!Class)
+    return false;
+  auto [It, New] = Contained.try_emplace({Class, Inner}, false);
+  if (!New)
+    return It->second;
+  // Of the standard library's templates, only the declaration may be known.
+  bool May = numberOf(Class) == Inner;
+  if (!May && Class->isForwardDecl())
+    May = !Class->getName().starts_with("basic_string<");
+  for (const DINode *N : Class->getElements()) {
+    const auto *Member = dyn_cast_or_null<DIDerivedType>(N);
+    if (!May && Member && !Member->isStaticMember() &&
+        (Member->getTag() == dwarf::DW_TAG_member ||
+         Member->getTag() == dwarf::DW_TAG_inheritance))
+      May = mayContain(Member->getBaseType(), Inner);
+  }
+  return Contained[{Class, Inner}] = May;
+}
+
 const DICompositeType *DebugTypes::findStruct(const DIType *T,
                                               StructType *Struct) const {
   uint64_t Bits = Struct->isSized()

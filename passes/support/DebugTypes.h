@@ -60,6 +60,10 @@ public:
     return Number ? Classes[Number - 1] : nullptr;
   }
 
+  /// False if no object of type \p T is one of the class number \p Inner or
+  /// contains one. True if the debug information does not tell.
+  bool mayContain(const llvm::DIType *T, unsigned Inner);
+
 private:
   const llvm::DIType *firstScalar(const llvm::DIType *T) const;
   const llvm::DIType *find(const llvm::Value *Pointer);
@@ -77,6 +81,8 @@ private:
   llvm::DenseMap<std::pair<const llvm::DIType *, llvm::StructType *>,
                  const llvm::DICompositeType *>
       Structs;
+  /// Cached results of mayContain.
+  llvm::DenseMap<std::pair<const llvm::DIType *, unsigned>, bool> Contained;
   llvm::DenseMap<const llvm::DICompositeType *, unsigned> Numbers;
   llvm::StringMap<unsigned> ByName;
   llvm::SmallVector<const llvm::DICompositeType *, 0> Classes;

@@ -273,6 +273,18 @@ bool waitsByName(const Function &F) {
                 [&](StringRef W) { return StringRef(Found).contains(W); });
 }
 
+const Argument *thisOf(const Function &F) {
+  const DISubprogram *SP = F.getSubprogram();
+  const unsigned N = F.hasStructRetAttr() ? 1 : 0;
+  if (!SP || !SP->getType() || N >= F.arg_size())
+    return nullptr;
+  // Before the parameters stands the result.
+  DITypeRefArray Types = SP->getType()->getTypeArray();
+  const bool HasObject =
+      Types.size() > 1 && Types[1] && Types[1]->isArtificial();
+  return HasObject ? F.getArg(N) : nullptr;
+}
+
 bool endsLife(const CallBase &Call) {
   const Function *F = Call.getCalledFunction();
   return F && F->isDeclarationForLinker() &&

@@ -72,6 +72,10 @@ llvm::SmallBitVector constArguments(const llvm::Function &F);
 inline constexpr llvm::StringLiteral TakeName = "_ZNK3tpc4Held4takeEv";
 inline constexpr llvm::StringLiteral PutName = "_ZN3tpc4Held3putEd";
 
+/// `this` of \p F; null if it has none, as in a static method, or if nothing is
+/// known about it.
+const llvm::Argument *thisOf(const llvm::Function &F);
+
 /// True for the mangled names of the functions that free memory.
 bool givesMemoryBack(llvm::StringRef Mangled);
 
