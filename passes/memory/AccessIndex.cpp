@@ -106,8 +106,10 @@ AccessIndex::Found<AccessIndex::Reads> AccessIndex::readsOf(const Location &L) {
   return Out;
 }
 
-SmallVector<const Access *, 16>
-AccessIndex::partsOf(const Location &Object) const {
+ArrayRef<const Access *> AccessIndex::partsOf(const Location &Object) {
+  auto [It, New] = Parts.try_emplace(Object);
+  if (!New)
+    return It->second;
   SmallSetVector<unsigned, 16> Numbers;
   WritesByObject.eachIn(Object, [&](unsigned N) {
     if (Alias.partOf(Object, PartWrites[N].Where))
@@ -115,13 +117,12 @@ AccessIndex::partsOf(const Location &Object) const {
   });
   SmallVector<unsigned, 16> Ordered = Numbers.takeVector();
   sort(Ordered);
-  SmallVector<const Access *, 16> Found;
   for (unsigned N : Ordered)
-    Found.push_back(&PartWrites[N]);
-  return Found;
+    It->second.push_back(&PartWrites[N]);
+  return It->second;
 }
 
-SmallVector<Instruction *, 8> AccessIndex::writesInto(const Location &L) const {
+SmallVector<Instruction *, 8> AccessIndex::writesInto(const Location &L) {
   Writes Out;
   for (const Access *Part : partsOf(L))
     Out.insert(Part->I);

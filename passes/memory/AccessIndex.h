@@ -71,9 +71,9 @@ public:
 
   /// The writes into the object at \p L, with the location of each: stores,
   /// copies, and calls that get a pointer to the object or to a part of it.
-  llvm::SmallVector<const Access *, 16> partsOf(const Location &L) const;
+  llvm::ArrayRef<const Access *> partsOf(const Location &L);
   /// The same, each instruction once.
-  llvm::SmallVector<llvm::Instruction *, 8> writesInto(const Location &L) const;
+  llvm::SmallVector<llvm::Instruction *, 8> writesInto(const Location &L);
 
   /// The calls that replace a variable.
   llvm::ArrayRef<Replacement> replacements() const { return Replacements; }
@@ -114,6 +114,8 @@ private:
   /// Of all writes, numbered as in PartWrites.
   PartIndex WritesByObject;
   llvm::SmallVector<Access, 0> PartWrites;
+  /// Cached results of partsOf.
+  LocationMap<llvm::SmallVector<const Access *, 0>> Parts;
   llvm::SmallVector<Replacement, 0> Replacements;
   /// Calls that replace a whole variable, and that variable.
   llvm::DenseMap<const llvm::Instruction *, Location> Replaced;

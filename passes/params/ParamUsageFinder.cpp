@@ -135,7 +135,7 @@ static bool hasNoThreshold(const CmpInst &Compare, unsigned Operand,
     return false;
   const Value *Other = Compare.getOperand(1 - Operand);
   if (const auto *C = dyn_cast<Constant>(Other))
-    return !How.isDifference() || !C->isZeroValue();
+    return !(How.isDifference() && C->isZeroValue()) && !How.isRemainder();
   return isComputedFrom(Compare.getOperand(Operand), Other);
 }
 

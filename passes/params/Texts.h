@@ -33,7 +33,7 @@ public:
   /// What is known about the module's memory.
   struct MemoryView {
     PointsTo &Pointers;
-    const AccessIndex &Accesses;
+    AccessIndex &Accesses;
     VisibleWrites &Writes;
     static MemoryView of(llvm::Module &M, llvm::ModuleAnalysisManager &AM) {
       return {AM.getResult<PointsToAnalysis>(M),

@@ -79,6 +79,11 @@ bool Transform::isDifference() const {
   return Inner && Inner->Op == "-" && Offset == 0;
 }
 
+bool Transform::isRemainder() const {
+  return Inner && Inner->Op == "rem" && Inner->First && !Inner->Constant &&
+         Inner->Of.kind() == None && Scale == 1 && Offset == 0;
+}
+
 /// The sign between two operands; empty for the name of a function.
 static StringRef signOf(const Application &A) {
   return StringSwitch<StringRef>(A.Op)

@@ -53,6 +53,9 @@ struct Transform {
   /// True for the plain difference to a value that is not constant: compared
   /// with zero, it compares the two.
   bool isDifference() const;
+  /// True for the remainder of a value that is not constant, divided by the
+  /// parameter: every x-th time.
+  bool isRemainder() const;
   /// For people: `2 * sqrt(x + 1)`, `x[]` for an element of a list, `size(x)`.
   std::string text() const;
   /// True if the only steps truncate the value to fewer bits: it is expected to
