@@ -87,8 +87,7 @@ std::optional<SmallVector<Step, 4>> Aliases::partOf(const Location &Object,
         (!L.Root && endsWith(Object.Path, Front)))
       return SmallVector<Step, 4>(Path.drop_front(K));
   }
-  if (!L.Root && !Path.empty() &&
-      Types.contains(Object, Path[0]))
+  if (!L.Root && !Path.empty() && Types.contains(Object, Path[0]))
     return SmallVector<Step, 4>(Path);
   return std::nullopt;
 }

@@ -64,6 +64,26 @@ void PointsToSolver::addReturned(const CallBase &Call, Node &N) {
   }
 }
 
+/// The class of the method that \p Call calls.
+static std::string classOfMethod(const CallBase &Call) {
+  const Function *Callee = Call.getCalledFunction();
+  return Callee ? StringRef(qualifiedName(Callee->getName()))
+                      .rsplit("::")
+                      .first.str()
+                : "";
+}
+
+/// Notes the class of the container if \p Call moves elements from one to
+/// another: references to them go along.
+void PointsToSolver::noteMove(const CallBase &Call) {
+  const Function *Callee = Call.getCalledFunction();
+  static constexpr StringRef Moves[] = {"swap", "merge", "splice", "extract",
+                                        "splice_after"};
+  if (Callee && Rules.container(Call) &&
+      is_contained(Moves, unscoped(qualifiedName(Callee->getName()))))
+    Moved.insert(classOfMethod(Call));
+}
+
 void PointsToSolver::makeNode(Instruction &I) {
   Node N{&I, {}};
   const auto *Call = dyn_cast<CallBase>(&I);
@@ -71,9 +91,10 @@ void PointsToSolver::makeNode(Instruction &I) {
     append_range(N.Sources, Phi->incoming_values());
   else if (const auto *Select = dyn_cast<SelectInst>(&I))
     N.Sources = {Select->getTrueValue(), Select->getFalseValue()};
-  else if (Call && Rules.container(*Call))
+  else if (Call && Rules.container(*Call)) {
     N.Container = containerOf(*Call);
-  else if (Call)
+    N.ContainerClass = classOfMethod(*Call);
+  } else if (Call)
     addReturned(*Call, N);
   else if (const auto *Extract = dyn_cast<ExtractValueInst>(&I)) {
     // A pair of an iterator and whether something was inserted.
@@ -81,6 +102,7 @@ void PointsToSolver::makeNode(Instruction &I) {
     if (!Pair || !Rules.container(*Pair))
       return;
     N.Container = containerOf(*Pair);
+    N.ContainerClass = classOfMethod(*Pair);
   } else if (!isa<LoadInst>(&I))
     return;
   Nodes.push_back(std::move(N));
@@ -103,6 +125,8 @@ void PointsToSolver::makeNodes() {
       if (auto *Call = dyn_cast<CallBase>(&I);
           Call && Call->hasStructRetAttr() && Rules.container(*Call))
         Iterators[Call->getArgOperand(0)].push_back(containerOf(*Call));
+      if (auto *Call = dyn_cast<CallBase>(&I))
+        noteMove(*Call);
       if (const auto *Store = dyn_cast<StoreInst>(&I);
           Store && Store->getValueOperand()->getType()->isPointerTy() &&
           !isa<ConstantPointerNull>(Store->getValueOperand()))
@@ -301,17 +325,13 @@ bool PointsToSolver::findsComplete(const Node &Load) const {
 }
 
 /// True if only the calls that are known pass objects of this module for
-/// \p Arg. Other libraries can call a function that is exported too. To an inline
-/// function of a library, and to a function that this module calls itself, they
-/// pass objects of their own. `this` of an exported method is another matter:
-/// who calls it may have made the object with a function of this module.
+/// \p Arg. Other libraries can call an exported function too, but to an inline
+/// function of a library's header they pass objects of their own.
 bool PointsToSolver::hasOwnCallers(const Argument &Arg) {
   const Function &F = *Arg.getParent();
-  if (!Calls.allCallsKnown(F))
-    return false;
-  return F.hasLocalLinkage() || M.getFunction("main") ||
-         (F.isWeakForLinker() && !R.Sources.has(F)) ||
-         (F.getSubprogram() && thisOf(F) != &Arg);
+  return Calls.allCallsKnown(F) &&
+         (F.hasLocalLinkage() || M.getFunction("main") ||
+          (F.isWeakForLinker() && !R.Sources.has(F)));
 }
 
 /// Arguments lead only to what the calls pass if all calls are known; phis lead
@@ -323,7 +343,8 @@ bool PointsToSolver::findComplete() {
     for (const Node &N : Nodes) {
       const auto *Arg = dyn_cast<Argument>(N.V);
       if (Arg ? !N.Sources.empty() && hasOwnCallers(*Arg)
-              : N.Container || isa<PHINode, SelectInst, LoadInst>(N.V))
+              : (N.Container && !Moved.contains(N.ContainerClass)) ||
+                    isa<PHINode, SelectInst, LoadInst>(N.V))
         R.Complete.insert(N.V);
     }
   }

@@ -13,6 +13,8 @@
 #include "memory/LocationIndex.h"
 #include "memory/PointsTo.h"
 
+#include "llvm/ADT/StringSet.h"
+
 namespace tpc {
 
 class PointsToSolver {
@@ -32,6 +34,7 @@ private:
     const llvm::Value *V;
     llvm::SmallVector<const llvm::Value *, 2> Sources;
     const llvm::Value *Container = nullptr; ///< if set, leads to its elements
+    std::string ContainerClass = "";        ///< its qualified name
     Locations Where = {};                   ///< of a load: what it reads
     unsigned Done = 0;                      ///< when it was last updated
   };
@@ -60,6 +63,7 @@ private:
 
   void makeNodes();
   void makeNode(llvm::Instruction &I);
+  void noteMove(const llvm::CallBase &Call);
   const Returned &returnedBy(const llvm::Function &F);
   void addReturned(const llvm::CallBase &Call, Node &N);
   void findFilled();
@@ -96,6 +100,8 @@ private:
   /// gained pointers.
   unsigned Now = 1;
   bool Assumed = false; ///< the complete pointers are an assumption
+  /// Container classes of which elements move from one object to another.
+  llvm::StringSet<> Moved;
   /// Locals into which other code, or a copy, may put pointers.
   llvm::DenseSet<const llvm::Value *> Filled;
   llvm::DenseMap<const llvm::Value *, unsigned> Grown;

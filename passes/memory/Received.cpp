@@ -6,6 +6,7 @@
 #include "support/Names.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/BinaryFormat/Dwarf.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Operator.h"
 
@@ -28,29 +29,44 @@ static const Value *originOf(const Value *Pointer) {
   }
 }
 
-/// True for a message, or an object that leads to one and nothing else.
-static bool isMessage(const DIType *T) {
+/// True if \p T is a message that must not be changed, or a smart pointer to
+/// one.
+static bool isConstMessage(const DIType *T) {
+  bool IsConst = false;
+  while (const auto *Derived = dyn_cast_or_null<DIDerivedType>(T)) {
+    IsConst |= Derived->getTag() == dwarf::DW_TAG_const_type;
+    T = Derived->getBaseType();
+  }
   const auto *Class = dyn_cast_or_null<DICompositeType>(T);
   if (!Class)
     return false;
   if (isMessageClass(*Class))
-    return true;
-  StringRef Name = Class->getName().split('<').first;
-  if (Name != "shared_ptr" && Name != "unique_ptr" && Name != "MessageEvent")
+    return IsConst;
+  if (!isSmartPointer(Class) && !Class->getName().starts_with("MessageEvent<"))
     return false;
-  for (const DITemplateParameter *P : Class->getTemplateParams()) {
-    const auto *Inner = dyn_cast_or_null<DICompositeType>(
-        DebugTypes::plain(P ? P->getType() : nullptr));
-    return Inner && isMessageClass(*Inner);
-  }
+  for (const DITemplateParameter *P : Class->getTemplateParams())
+    return P && isConstMessage(P->getType());
   return false;
+}
+
+/// The type of \p Arg in the source, with its qualifiers; null if it is not
+/// known.
+static const DIType *declaredType(const Argument &Arg) {
+  const DISubprogram *SP = Arg.getParent()->getSubprogram();
+  DITypeRefArray Types =
+      SP && SP->getType() ? SP->getType()->getTypeArray() : nullptr;
+  unsigned Hidden = Arg.getParent()->hasStructRetAttr() ? 1 : 0;
+  if (Types.size() == 0 ||
+      Arg.getParent()->arg_size() - Hidden != Types.size() - 1)
+    return nullptr;
+  return Types[Arg.getArgNo() - Hidden + 1];
 }
 
 Received::Received(Module &M, const CallGraphResult &Calls, DebugTypes &Debug,
                    const LocationTypes &Types, PointsTo &Pointers,
-                   UserSources Own)
+                   const AccessIndex &Accesses, UserSources Own)
     : Calls(Calls), Debug(Debug), Types(Types), Pointers(Pointers),
-      Sources(std::move(Own)) {
+      Accesses(Accesses), Sources(std::move(Own)) {
   for (const Function &F : definedFunctions(M))
     if (Sources.has(F))
       for (const Argument &Arg : F.args())
@@ -62,20 +78,63 @@ Received::Received(Module &M, const CallGraphResult &Calls, DebugTypes &Debug,
     ;
 }
 
-/// True if \p Arg is a message that a library hands to the program.
+/// True if \p Arg is a message that a library hands to the program, which does
+/// not change it.
 bool Received::isHandedOver(const Argument &Arg) {
   const Function &F = *Arg.getParent();
-  bool ByLibrary =
-      !Calls.mentions(&F).empty() ||
-      any_of(Calls.callers(&F), [&](const CallBase *Call) {
-        return !Sources.has(*Call->getFunction());
-      });
-  return ByLibrary && Arg.getType()->isPointerTy() &&
-         !Arg.hasStructRetAttr() && isMessage(Debug.pointee(&Arg));
+  bool ByLibrary = !Calls.mentions(&F).empty() ||
+                   any_of(Calls.callers(&F), [&](const CallBase *Call) {
+                     return !Sources.has(*Call->getFunction());
+                   });
+  if (!ByLibrary || !Arg.getType()->isPointerTy() || Arg.hasStructRetAttr())
+    return false;
+  if (isConstMessage(declaredType(Arg)))
+    return true;
+  const auto *Class = dyn_cast_or_null<DICompositeType>(Debug.pointee(&Arg));
+  return Class && isMessageClass(*Class) && isOnlyRead(Arg);
+}
+
+/// True if nothing is written through \p Arg or a pointer that it leads to, and
+/// no such pointer is stored.
+bool Received::isOnlyRead(const Argument &Arg) {
+  constexpr unsigned MostPointers = 256;
+  SmallSetVector<const Value *, 16> Work;
+  Work.insert(&Arg);
+  for (unsigned N = 0; N < Work.size(); ++N)
+    for (const Use &U : Work[N]->uses()) {
+      const auto *I = cast<Instruction>(U.getUser());
+      const auto *Call = dyn_cast<CallBase>(I);
+      const auto *Fill = dyn_cast<MemIntrinsic>(I);
+      if (Work.size() > MostPointers || isa<StoreInst>(I) ||
+          (Fill && U.getOperandNo() == 0))
+        return false;
+      if (Call && !isa<IntrinsicInst>(Call)) {
+        SmallVector<Function *, 1> Callees = Calls.callees(*Call);
+        if (Callees.empty() ? !Accesses.isUnchanged(U) && !endsLife(*Call)
+                            : !Call->isArgOperand(&U))
+          return false;
+        for (const Function *Callee : Callees)
+          if (Call->getArgOperandNo(&U) < Callee->arg_size())
+            Work.insert(Callee->getArg(Call->getArgOperandNo(&U)));
+      }
+      if (I->getType()->isPointerTy())
+        Work.insert(I);
+    }
+  return true;
+}
+
+/// True for the classes in which std::bind, boost::bind and std::thread keep
+/// what the program passes.
+static bool keepsBound(const DICompositeType &Class) {
+  std::string Name = DebugTypes::identifierOf(Class);
+  return any_of(
+      ArrayRef<StringRef>{"_ZTSN5boost3_bi6bind_tI", "_ZTSSt5_BindI",
+                          "_ZTSNSt6thread"},
+      [&](StringRef Begin) { return StringRef(Name).starts_with(Begin); });
 }
 
 /// True if the program made what is at \p L: a local, a member of one of its
-/// classes, or an element of a container.
+/// classes, an element of a container, or what it bound to the callback.
 bool Received::isOwn(const Location &L) {
   if (isa_and_nonnull<GlobalVariable>(L.Root) || L.isElement())
     return true;
@@ -84,7 +143,9 @@ bool Received::isOwn(const Location &L) {
          any_of(L.Path, [&](const Step &S) {
            const DICompositeType *Class =
                S.isField() ? Types.sourceClassOf(S) : nullptr;
-           return Class && Class->getFile() && Sources.has(Class->getFile());
+           return Class &&
+                  ((Class->getFile() && Sources.has(Class->getFile())) ||
+                   keepsBound(*Class));
          });
 }
 
@@ -93,8 +154,9 @@ bool Received::isOwn(const Location &L) {
 /// program gave them.
 bool Received::handsOver(const CallBase &Call, unsigned N) {
   return N < Call.arg_size() && !Sources.has(*Call.getFunction()) &&
-         none_of(Pointers.resolve(Call.getArgOperand(N), false),
-                 [&](const Location &L) { return isOwn(L); });
+         none_of(
+             Pointers.resolve(Call.getArgOperand(N), false),
+             [&](const Location &L) { return isOwn(L); });
 }
 
 /// Adds the pointers that \p Pointer can be, or be a part of.
@@ -146,19 +208,7 @@ bool Received::has(const Value *Pointer) const {
   if (Found.empty() || !Pointer)
     return false;
   const Value *Origin = originOf(Pointer);
-  return isa<ConstantPointerNull, UndefValue>(Origin) ||
-         Found.contains(Origin);
-}
-
-bool Received::isWrittenBy(const Instruction &Write) const {
-  if (const Value *Pointer = getLoadStorePointerOperand(&Write))
-    return has(Pointer);
-  if (const auto *Copy = dyn_cast<MemIntrinsic>(&Write))
-    return has(Copy->getRawDest());
-  const auto *Call = dyn_cast<CallBase>(&Write);
-  return Call && any_of(Call->args(), [&](const Use &Arg) {
-           return Arg->getType()->isPointerTy() && has(Arg);
-         });
+  return isa<ConstantPointerNull, UndefValue>(Origin) || Found.contains(Origin);
 }
 
 } // namespace tpc

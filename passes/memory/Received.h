@@ -2,20 +2,21 @@
 //
 // A callback gets a message, and a service its request, from another process.
 // Such an object is one of its own: it is none of those of the same class that
-// the link unit makes itself. Only what is written through a pointer to it,
-// which few callbacks do, can be read through such a pointer.
+// the link unit fills itself, and if the callback does not change it, nothing
+// in the link unit writes what is read there. Messages that a callback may
+// change count if it does not; those behind a smart pointer do not count.
 //
-// Pointers to it are arguments of callbacks that are messages, or smart
-// pointers to them, and what is computed and loaded from those, also in the
-// functions that only get such pointers. Found as the largest set that supports
-// itself among the pointers that can be reached from the callbacks, so that
-// iterators in loops belong to it.
+// Pointers to them are arguments of callbacks, and what is computed and loaded
+// from those, also in the functions that only get such pointers. Found as the
+// largest set that supports itself among the pointers that can be reached from
+// the callbacks, so that iterators in loops belong to it.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_RECEIVED_H
 #define TPC_RECEIVED_H
 
 #include "Options.h"
+#include "memory/AccessIndex.h"
 #include "memory/PointsTo.h"
 #include "support/DebugTypes.h"
 
@@ -30,17 +31,15 @@ class Received {
 public:
   Received(llvm::Module &M, const CallGraphResult &Calls, DebugTypes &Debug,
            const LocationTypes &Types, PointsTo &Pointers,
-           UserSources Sources);
+           const AccessIndex &Accesses, UserSources Sources);
 
   /// True if \p Pointer, where it is not null, only leads to what other
   /// processes filled.
   bool has(const llvm::Value *Pointer) const;
-  /// True if \p Write, a store, copy or call, can write to such memory by a
-  /// pointer to it.
-  bool isWrittenBy(const llvm::Instruction &Write) const;
 
 private:
   bool isHandedOver(const llvm::Argument &Arg);
+  bool isOnlyRead(const llvm::Argument &Arg);
   bool isOwn(const Location &L);
   bool handsOver(const llvm::CallBase &Call, unsigned N);
   void addUsersOf(const llvm::Value *Pointer);
@@ -50,6 +49,7 @@ private:
   DebugTypes &Debug;
   const LocationTypes &Types;
   PointsTo &Pointers;
+  const AccessIndex &Accesses;
   UserSources Sources;
   /// Arguments, phis, selects and loads; all others are computed from those.
   llvm::SmallSetVector<const llvm::Value *, 16> Found;

@@ -23,7 +23,7 @@ VisibleWrites::VisibleWrites(Module &M, ModuleAnalysisManager &AM)
       Shared(M, AM.getResult<SimpleCallGraph>(M), AM.getResult<Throws>(M),
              AM.getResult<DebugTypesAnalysis>(M), Accesses.replacements()),
       Messages(M, AM.getResult<SimpleCallGraph>(M),
-               AM.getResult<DebugTypesAnalysis>(M), Types, Pointers,
+               AM.getResult<DebugTypesAnalysis>(M), Types, Pointers, Accesses,
                UserSources(AM.getResult<OptionsAnalysis>(M))) {}
 
 /// The writes of \p L, including those through copies of whole objects.
@@ -124,11 +124,8 @@ SmallVector<Instruction *, 8> VisibleWrites::writesOf(const Location &L,
     });
     return All.takeVector();
   }
-  if (Messages.has(Pointer)) {
-    Writes All = allWrites(L);
-    All.remove_if([&](Instruction *W) { return !Messages.isWrittenBy(*W); });
-    return All.takeVector();
-  }
+  if (Messages.has(Pointer))
+    return {};
   const SharedWrites &All = sharedWrites(L);
   if (All.TooMany)
     return allWrites(L).takeVector();
@@ -230,6 +227,8 @@ SmallVector<Instruction *, 8> VisibleWrites::writesInto(const Location &L,
                                                         const Instruction &At,
                                                         const Value *Pointer) {
   Writes Out;
+  if (Messages.has(Pointer))
+    return {};
   bool Local = isLocalOf(L, At) && !Alias.isReachable(L);
   LocationMap<Writes> Gone;
   SmallVector<Part, 4> Parts;
@@ -237,8 +236,6 @@ SmallVector<Instruction *, 8> VisibleWrites::writesInto(const Location &L,
     Parts = replacedParts(L, At, Pointer);
   // For each part, the last write before \p At counts.
   auto Stays = [&](const Instruction &Write, const Location &Where) {
-    if (Messages.has(Pointer))
-      return Messages.isWrittenBy(Write);
     if (!Local) {
       auto Way = Alias.partOf(L, Where);
       auto *It = find_if(Parts, [&](const Part &P) {

@@ -58,6 +58,7 @@ public:
         Ifs(AM.getResult<IfStatements>(M)), Thrown(AM.getResult<Throws>(M)),
         Exposing(AM.getResult<ExternCallFinder>(M)),
         Rules(AM.getResult<RuleAnalysis>(M)),
+        Debug(AM.getResult<DebugTypesAnalysis>(M)),
         Sources(AM.getResult<OptionsAnalysis>(M)),
         IsThesis(AM.getResult<OptionsAnalysis>(M).Profile == "thesis") {}
 
@@ -99,6 +100,7 @@ private:
   void enterThrowers(CallBase &Call);
   void enterDerived(const Value *Pointer, bool IntoCallees = false);
   void enterContents(const Value *Pointer, Instruction &At, bool IsOfCaller);
+  void enterTarget(const Value *Pointer);
   void enterPublisher(const Value *Object);
   void enterReachable(CallBase &Call);
 
@@ -113,6 +115,7 @@ private:
   const ThrowsResult &Thrown;
   const ExternCallFinder::Result &Exposing;
   const RuleMatches &Rules;
+  DebugTypes &Debug;
   UserSources Sources;
   const bool IsThesis; ///< only what a predicate decides counts
 
@@ -394,6 +397,43 @@ void Slicer::enterContents(const Value *Pointer, Instruction &At,
   Settled.clear();
 }
 
+/// What the smart pointer at \p Pointer leads to matters: what is written
+/// through the pointers that are read from it, or that it took over from
+/// another one.
+void Slicer::enterTarget(const Value *Pointer) {
+  constexpr unsigned MostTakenOver = 16;
+  if (!isSmartPointer(Debug.pointee(Pointer)))
+    return;
+  const Value *Object = getUnderlyingObject(Pointer);
+  Locations Kept = Pointers.resolve(Pointer, true);
+  for (unsigned N = 0; N < Kept.size() && N < MostTakenOver; ++N) {
+    const Location Here = Kept[N];
+    // Without a root, and in no other object, it is any of its class.
+    const bool IsAny = !Here.Root && Here.Path.size() < 2;
+    auto IsHere = [&](const Value *Place) {
+      return IsAny
+                 ? getUnderlyingObject(Place) == Object
+                 : any_of(Pointers.resolve(Place, true),
+                          [&](const Location &L) { return L.mayEqual(Here); });
+    };
+    for (LoadInst *Load : Accesses.readsOf(Here).Own)
+      if (Load->getType()->isPointerTy() && IsHere(Load->getPointerOperand()))
+        enterDerived(Load, /*IntoCallees=*/true);
+    for (Instruction *Write : Accesses.writesOf(Here).Own) {
+      auto *Store = dyn_cast<StoreInst>(Write);
+      const Value *Stored = Store ? Store->getValueOperand() : nullptr;
+      if (!Stored || !Stored->getType()->isPointerTy() ||
+          !IsHere(Store->getPointerOperand()))
+        continue;
+      enterDerived(Stored, /*IntoCallees=*/true);
+      if (const auto *From = dyn_cast<LoadInst>(Stored))
+        for (const Location &L :
+             Pointers.resolve(From->getPointerOperand(), true))
+          addTo(Kept, L);
+    }
+  }
+}
+
 /// Everything that an exposing statement shows: the contents of its arguments.
 void Slicer::enterReachable(CallBase &Call) {
   const Rule *Row = Rules.match(Call);
@@ -404,8 +444,10 @@ void Slicer::enterReachable(CallBase &Call) {
       continue;
     }
     enterValue(Arg);
-    if (Arg->getType()->isPointerTy())
-      enterContents(Arg, Call, /*IsOfCaller=*/false);
+    if (!Arg->getType()->isPointerTy())
+      continue;
+    enterContents(Arg, Call, /*IsOfCaller=*/false);
+    enterTarget(Arg);
   }
 }
 

@@ -117,10 +117,10 @@ ExternCallFinder::Result ExternCallFinder::run(Module &M,
   for (Function *F : Overriding.Functions)
     addGivenBack(*F, R);
   SmallVector<InheritedWrite, 0> Writes = inheritedWrites(M, Overriding);
-  Writes.append(keptObjectWrites(
-      M, AM.getResult<SimpleCallGraph>(M), Rules,
-      AM.getResult<DebugTypesAnalysis>(M), Overriding,
-      UserSources(AM.getResult<OptionsAnalysis>(M))));
+  Writes.append(
+      keptObjectWrites(M, AM.getResult<SimpleCallGraph>(M), Rules,
+                       AM.getResult<DebugTypesAnalysis>(M), Overriding,
+                       UserSources(AM.getResult<OptionsAnalysis>(M))));
   for (InheritedWrite &W : Writes) {
     std::string Name = qualifiedName(linkageName(*W.I->getFunction()));
     std::string Topic = (unscoped(Name) + " -> " + W.Class).str();

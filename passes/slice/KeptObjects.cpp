@@ -2,6 +2,7 @@
 #include "slice/KeptObjects.h"
 
 #include "calls/ClassHierarchy.h"
+#include "memory/PointsTo.h"
 #include "support/Functions.h"
 #include "support/Names.h"
 
@@ -16,11 +17,11 @@ namespace tpc {
 
 namespace {
 
-class Finder {
+class KeptObjectFinder {
 public:
-  Finder(Module &M, const CallGraphResult &Calls, const RuleMatches &Rules,
-         DebugTypes &Debug, const OverridingFunctions &Overriding,
-         UserSources Sources)
+  KeptObjectFinder(Module &M, const CallGraphResult &Calls,
+                   const RuleMatches &Rules, DebugTypes &Debug,
+                   const OverridingFunctions &Overriding, UserSources Sources)
       : M(M), Calls(Calls), Rules(Rules), Debug(Debug),
         Sources(std::move(Sources)) {
     for (const Function *F : Overriding.Functions) {
@@ -58,18 +59,14 @@ private:
   /// seen by looking at the arguments of a function.
   SmallPtrSet<const Value *, 16> Kept;
   DenseSet<Member> Members;
+  SmallVector<const Value *, 16> Work; ///< pointers whose uses are to be seen
 };
 
 } // namespace
 
-static bool isSmartPointer(const DIType *T) {
-  StringRef Name = T ? T->getName().split('<').first : "";
-  return Name == "shared_ptr" || Name == "unique_ptr";
-}
-
 /// True if an object of type \p T is a part of the robot that others see, not a
 /// tool that every class gets.
-bool Finder::isPart(const DIType *T) const {
+bool KeptObjectFinder::isPart(const DIType *T) const {
   const auto *Class = dyn_cast_or_null<DICompositeType>(T);
   if (!Class)
     return false;
@@ -85,31 +82,33 @@ bool Finder::isPart(const DIType *T) const {
 
 /// Adds the arguments of \p F, an overriding function, through which objects
 /// are handed over that it may change.
-void Finder::addArguments(const Function &F) {
+void KeptObjectFinder::addArguments(const Function &F) {
   SmallVector<const Argument *, 4> Written = writtenArguments(F);
   for (const Argument &Arg : F.args()) {
     if (!Arg.getType()->isPointerTy() || Arg.hasStructRetAttr())
       continue;
     const DIType *T = Debug.pointee(&Arg);
     if ((is_contained(Written, &Arg) || isSmartPointer(T)) && isPart(T))
-      Handed.insert({&Arg, cast<DICompositeType>(T)});
+      add(&Arg, &Arg);
   }
 }
 
 /// Adds \p Pointer, which was made from \p From.
-void Finder::add(const Value *Pointer, const Value *From) {
+void KeptObjectFinder::add(const Value *Pointer, const Value *From) {
   const DIType *T = Debug.pointee(Pointer);
-  const auto *Class = isPart(T) && !isSmartPointer(T)
-                          ? cast<DICompositeType>(T)
-                          : Handed.lookup(From);
-  Handed.insert({Pointer, Class});
+  const auto *Class = isPart(T) && !isSmartPointer(T) ? cast<DICompositeType>(T)
+                                                      : Handed.lookup(From);
+  bool IsNew = Handed.insert({Pointer, Class}).second;
   if (Kept.contains(From))
-    Kept.insert(Pointer);
+    IsNew |= Kept.insert(Pointer).second;
+  if (IsNew)
+    Work.push_back(Pointer);
 }
 
 /// The member of an object of a class with overriding functions that
 /// \p Pointer, or an object that it lies in, is; none for other places.
-std::optional<Finder::Member> Finder::memberAt(const Value *Pointer) {
+std::optional<KeptObjectFinder::Member>
+KeptObjectFinder::memberAt(const Value *Pointer) {
   const GEPOperator *Outermost = nullptr;
   while (const auto *GEP = dyn_cast<GEPOperator>(Pointer)) {
     if (GEP->getSourceElementType()->isStructTy() && GEP->getNumIndices() > 1)
@@ -129,8 +128,8 @@ std::optional<Finder::Member> Finder::memberAt(const Value *Pointer) {
 
 /// \p Call gets \p Pointer, which leads to a part of what was handed over, as
 /// \p Arg.
-void Finder::followCall(const Value &Pointer, const CallBase &Call,
-                        const Use &Arg) {
+void KeptObjectFinder::followCall(const Value &Pointer, const CallBase &Call,
+                                  const Use &Arg) {
   unsigned N = Call.getArgOperandNo(&Arg);
   for (const Function *Callee : Calls.callees(Call))
     if (N < Callee->arg_size() && Sources.has(*Callee))
@@ -141,7 +140,7 @@ void Finder::followCall(const Value &Pointer, const CallBase &Call,
     add(&Call, &Pointer);
 }
 
-void Finder::followUse(const Value &Pointer, const Use &U) {
+void KeptObjectFinder::followUse(const Value &Pointer, const Use &U) {
   const auto *I = cast<Instruction>(U.getUser());
   if (const auto *Store = dyn_cast<StoreInst>(I)) {
     if (Store->getValueOperand() == &Pointer)
@@ -154,15 +153,14 @@ void Finder::followUse(const Value &Pointer, const Use &U) {
       followCall(Pointer, *Call, U);
     return;
   }
-  if (!I->getType()->isPointerTy() ||
-      !isa<GetElementPtrInst, CastInst, PHINode, SelectInst, FreezeInst,
-           LoadInst>(I))
+  if (!I->getType()->isPointerTy() || !isa<GetElementPtrInst, CastInst, PHINode,
+                                           SelectInst, FreezeInst, LoadInst>(I))
     return;
   add(I, &Pointer);
 }
 
 /// Adds what the methods read from the members.
-void Finder::addLoadsOfMembers() {
+void KeptObjectFinder::addLoadsOfMembers() {
   for (Function &F : definedFunctions(M)) {
     if (!Derived.contains(scopeOf(F)))
       continue;
@@ -172,7 +170,8 @@ void Finder::addLoadsOfMembers() {
         continue;
       std::optional<Member> From = memberAt(Load->getPointerOperand());
       if (From && Members.contains(*From)) {
-        Kept.insert(Load);
+        if (Kept.insert(Load).second)
+          Work.push_back(Load);
         add(Load, Load);
       }
     }
@@ -180,7 +179,8 @@ void Finder::addLoadsOfMembers() {
 }
 
 /// True if \p I writes into a kept object; sets \p Pointer to where.
-bool Finder::isWrite(const Instruction &I, const Value *&Pointer) const {
+bool KeptObjectFinder::isWrite(const Instruction &I,
+                               const Value *&Pointer) const {
   if (const auto *Store = dyn_cast<StoreInst>(&I)) {
     Pointer = Store->getPointerOperand();
     return Kept.contains(Pointer);
@@ -191,10 +191,13 @@ bool Finder::isWrite(const Instruction &I, const Value *&Pointer) const {
   }
   const auto *Call = dyn_cast<CallBase>(&I);
   const Function *Callee = Call ? Call->getCalledFunction() : nullptr;
-  if (!Call || Call->arg_empty() || Call->getType()->isPointerTy())
+  Pointer = Call ? containerOf(*Call) : nullptr;
+  if (!Pointer || Call->getType()->isPointerTy() || !Kept.contains(Pointer) ||
+      !isPart(Debug.pointee(Pointer)))
     return false;
-  Pointer = Call->getArgOperand(Call->hasStructRetAttr() ? 1 : 0);
-  if (!Kept.contains(Pointer) || !isPart(Debug.pointee(Pointer)))
+  // What returns a value and takes nothing only asks, even if it is not const.
+  bool Returns = Call->hasStructRetAttr() || !Call->getType()->isVoidTy();
+  if (Returns && Call->arg_size() == (Call->hasStructRetAttr() ? 2 : 1))
     return false;
   if (!Callee)
     return ClassHierarchy::match(*Call) && Calls.callees(*Call).empty();
@@ -205,20 +208,21 @@ bool Finder::isWrite(const Instruction &I, const Value *&Pointer) const {
          Call->arg_size() > parameterTypes(*Callee).size();
 }
 
-SmallVector<InheritedWrite, 0> Finder::find() {
+SmallVector<InheritedWrite, 0> KeptObjectFinder::find() {
   SmallVector<InheritedWrite, 0> Found;
-  size_t Done = 0, Known = 0;
+  size_t Known = 0;
   do {
-    Known = Members.size();
-    for (; Done < Handed.size(); ++Done) {
-      const Value *Pointer = Handed.begin()[Done].first;
+    while (!Work.empty()) {
+      const Value *Pointer = Work.pop_back_val();
       for (const Use &U : Pointer->uses())
         if (isa<Instruction>(U.getUser()))
           followUse(*Pointer, U);
     }
-    if (Members.size() > Known)
+    if (Members.size() > Known) {
+      Known = Members.size();
       addLoadsOfMembers();
-  } while (Done < Handed.size() || Members.size() > Known);
+    }
+  } while (!Work.empty());
   if (Kept.empty())
     return Found;
   for (Function &F : definedFunctions(M))
@@ -236,7 +240,9 @@ SmallVector<InheritedWrite, 0>
 keptObjectWrites(Module &M, const CallGraphResult &Calls,
                  const RuleMatches &Rules, DebugTypes &Debug,
                  const OverridingFunctions &Overriding, UserSources Sources) {
-  return Finder(M, Calls, Rules, Debug, Overriding, std::move(Sources)).find();
+  return KeptObjectFinder(M, Calls, Rules, Debug, Overriding,
+                          std::move(Sources))
+      .find();
 }
 
 } // namespace tpc

@@ -34,10 +34,10 @@ private:
   StringMap<std::string> Known;
 };
 
-class Finder {
+class OverrideFinder {
 public:
-  Finder(const Module &M, const CallGraphResult &Calls,
-         const RuleMatches &Rules, const Options &Opts)
+  OverrideFinder(const Module &M, const CallGraphResult &Calls,
+                 const RuleMatches &Rules, const Options &Opts)
       : M(M), Calls(Calls), Rules(Rules), Opts(Opts), Sources(Opts) {}
 
   /// Adds the function that \p V shows to \p Out if it overrides one of another
@@ -106,14 +106,14 @@ static std::optional<bool> declares(const DICompositeType *Class,
   });
 }
 
-bool Finder::isCalledThroughClass(const Function &F) const {
+bool OverrideFinder::isCalledThroughClass(const Function &F) const {
   return any_of(Calls.callers(&F), [](const CallBase *Call) {
     return ClassHierarchy::match(*Call).has_value();
   });
 }
 
 /// True if \p F is an inline function of a class of another library.
-bool Finder::isOthers(const Function &F) const {
+bool OverrideFinder::isOthers(const Function &F) const {
   const auto *Class =
       dyn_cast_or_null<DICompositeType>(F.getSubprogram()->getScope());
   std::string Name = Class ? DebugTypes::identifierOf(*Class) : "";
@@ -125,7 +125,8 @@ bool Finder::isOthers(const Function &F) const {
 }
 
 /// True if the header of \p Base belongs to somebody else than \p F.
-bool Finder::isElsewhere(const DICompositeType &Base, const Function &F) {
+bool OverrideFinder::isElsewhere(const DICompositeType &Base,
+                                 const Function &F) {
   std::string Header = pathOf(Base.getFile());
   return !Opts.isUserSource(Header) ||
          Folders.of(Header) != Folders.of(pathOf(F.getSubprogram()->getFile()));
@@ -134,8 +135,8 @@ bool Finder::isElsewhere(const DICompositeType &Base, const Function &F) {
 /// True if \p F, in \p Slot of a vtable, overrides a function of \p Base, a
 /// class of another library. \p IsCalled says whether a call through a class
 /// enters it in this unit.
-bool Finder::overrides(const Function &F, unsigned Slot, StringRef Base,
-                       bool IsCalled) {
+bool OverrideFinder::overrides(const Function &F, unsigned Slot, StringRef Base,
+                               bool IsCalled) {
   if (Rules.keepsOverrides(Base))
     return false;
   const auto *Class =
@@ -154,7 +155,7 @@ bool Finder::overrides(const Function &F, unsigned Slot, StringRef Base,
   return Opts.SharedLibrary && Declared && !IsCalled;
 }
 
-void Finder::find(const VirtualFunction &V, OverridingFunctions &Out) {
+void OverrideFinder::find(const VirtualFunction &V, OverridingFunctions &Out) {
   Function *F = behindThunk(V.F);
   if (!F || F->isDeclaration() || !Sources.has(*F) || Rules.isOpaque(*F) ||
       F->getSubprogram()->getName().starts_with("~") || isOthers(*F))
@@ -174,7 +175,7 @@ OverridingFunctions overridingFunctions(Module &M, const CallGraphResult &Calls,
   OverridingFunctions Found;
   if (!Rules.showsOverrides())
     return Found;
-  Finder In(M, Calls, Rules, Opts);
+  OverrideFinder In(M, Calls, Rules, Opts);
   ClassHierarchy(M).forEachFunction(
       [&](const VirtualFunction &V) { In.find(V, Found); });
   return Found;

@@ -21,6 +21,11 @@ DebugTypes DebugTypesAnalysis::run(Module &M, ModuleAnalysisManager &) {
   return DebugTypes(M.getDataLayout());
 }
 
+bool isSmartPointer(const DIType *T) {
+  StringRef Name = T ? T->getName().split('<').first : "";
+  return Name == "shared_ptr" || Name == "unique_ptr";
+}
+
 const DIType *DebugTypes::plain(const DIType *T) {
   while (const auto *Derived = dyn_cast_or_null<DIDerivedType>(T)) {
     switch (Derived->getTag()) {

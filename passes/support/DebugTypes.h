@@ -88,6 +88,9 @@ private:
   llvm::SmallVector<const llvm::DICompositeType *, 0> Classes;
 };
 
+/// True for std::shared_ptr, boost::shared_ptr and std::unique_ptr.
+bool isSmartPointer(const llvm::DIType *T);
+
 class DebugTypesAnalysis : public llvm::AnalysisInfoMixin<DebugTypesAnalysis> {
 public:
   using Result = DebugTypes;

@@ -8,7 +8,6 @@ public:
   explicit Relay(ros::NodeHandle &nh) {
     nh.param("idle", idle_, 2.0);
     nh.param("limit", limit_, 5.0);
-    nh.param("cap", cap_, 8.0);
     logged_ = &own_;
     pub_ = nh.advertise<std_msgs::Float64>("output", 1000);
     sub_ = nh.subscribe("input", 1000, &Relay::onInput, this);
@@ -20,11 +19,9 @@ private:
     message->data = value;
   }
 
-  void onInput(const boost::shared_ptr<std_msgs::Float64> &msg) {
+  void onInput(const std_msgs::Float64::ConstPtr &msg) {
     if (msg->data < idle_)
       fill(logged_, msg->data);
-    if (msg->data > cap_)
-      msg->data = -1;
     relay(*msg);
     ROS_DEBUG("%f", logged_->data);
   }
@@ -35,7 +32,7 @@ private:
     pub_.publish(msg);
   }
 
-  double idle_, limit_, cap_;
+  double idle_, limit_;
   std_msgs::Float64 own_;
   std_msgs::Float64 *logged_;
   ros::Publisher pub_;

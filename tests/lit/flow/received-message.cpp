@@ -27,12 +27,13 @@ public:
     Mutable = Handle.subscribe("mutable", 1, &Node::change, this);
   }
   // CHECK: comparisons of {{.*}}: 1
-  // CHECK-NEXT: 'limit'{{.*}}change{{.*}} at [[# @LINE + 5]]:
+  // CHECK-NEXT: 'limit'{{.*}}change{{.*}} at [[#@LINE + 5]]:
   void fill(Filter &To) {
     To.kept().data = Gain > 2 ? 1 : 0; // only the node's own message
   }
   void change(const boost::shared_ptr<std_msgs::Float64> &Message) {
-    Message->data = Message->data > Limit ? 1 : 0;
+    if (ros::Time::now().toSec() > Limit)
+      Message->data = 1;
     Out.publish(Message);
   }
   void receive(const std_msgs::Float64::ConstPtr &Message) { relay(*Message); }
