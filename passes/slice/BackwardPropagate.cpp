@@ -402,7 +402,8 @@ void Slicer::enterContents(const Value *Pointer, Instruction &At,
 /// another one.
 void Slicer::enterTarget(const Value *Pointer) {
   constexpr unsigned MostTakenOver = 16;
-  if (!isSmartPointer(Debug.pointee(Pointer)))
+  const DIType *T = Debug.pointee(Pointer);
+  if (!isSmartPointer(T) || pointsToConst(T))
     return;
   const Value *Object = getUnderlyingObject(Pointer);
   Locations Kept = Pointers.resolve(Pointer, true);

@@ -26,6 +26,21 @@ bool isSmartPointer(const DIType *T) {
   return Name == "shared_ptr" || Name == "unique_ptr";
 }
 
+bool pointsToConst(const DIType *T) {
+  const auto *Class = dyn_cast_or_null<DICompositeType>(T);
+  if (!Class || !isSmartPointer(Class))
+    return false;
+  for (const DITemplateParameter *P : Class->getTemplateParams()) {
+    const DIType *Of = P ? P->getType() : nullptr;
+    for (; isa_and_nonnull<DIDerivedType>(Of);
+         Of = cast<DIDerivedType>(Of)->getBaseType())
+      if (Of->getTag() == dwarf::DW_TAG_const_type)
+        return true;
+    return false;
+  }
+  return false;
+}
+
 const DIType *DebugTypes::plain(const DIType *T) {
   while (const auto *Derived = dyn_cast_or_null<DIDerivedType>(T)) {
     switch (Derived->getTag()) {

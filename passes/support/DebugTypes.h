@@ -90,6 +90,8 @@ private:
 
 /// True for std::shared_ptr, boost::shared_ptr and std::unique_ptr.
 bool isSmartPointer(const llvm::DIType *T);
+/// True for a smart pointer through which nothing can be written.
+bool pointsToConst(const llvm::DIType *T);
 
 class DebugTypesAnalysis : public llvm::AnalysisInfoMixin<DebugTypesAnalysis> {
 public:
