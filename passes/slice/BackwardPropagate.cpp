@@ -423,7 +423,8 @@ void Slicer::enterTarget(const Value *Pointer) {
     for (Instruction *Write : Accesses.writesOf(Here).Own) {
       auto *Store = dyn_cast<StoreInst>(Write);
       const Value *Stored = Store ? Store->getValueOperand() : nullptr;
-      if (!Stored || !Stored->getType()->isPointerTy() ||
+      if (!Stored || isa<Constant>(Stored) ||
+          !Stored->getType()->isPointerTy() ||
           !IsHere(Store->getPointerOperand()))
         continue;
       enterDerived(Stored, /*IntoCallees=*/true);
