@@ -91,7 +91,6 @@ static const Value *throughCasts(const Value *V) {
   }
 }
 
-/// The pointer that \p Pointer is computed from.
 const Value *PointsTo::baseOf(const Value *Pointer) {
   const Value *Base = throughCasts(Pointer);
   while (const auto *GEP = dyn_cast<GEPOperator>(Base))

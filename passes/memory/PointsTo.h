@@ -61,10 +61,12 @@ public:
   /// Adds the elements of the container that \p Container points to.
   void addElements(const llvm::Value *Container, Locations &Out);
 
+  /// The pointer that \p Pointer is computed from without reading memory.
+  static const llvm::Value *baseOf(const llvm::Value *Pointer);
+
 private:
   friend class PointsToSolver;
 
-  static const llvm::Value *baseOf(const llvm::Value *Pointer);
   void addPointees(const llvm::Value *Pointer, Locations &Out);
   void followChain(Location L, llvm::ArrayRef<const llvm::GEPOperator *> Chain,
                    bool Walks, Locations &Out);

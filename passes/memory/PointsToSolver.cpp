@@ -64,15 +64,6 @@ void PointsToSolver::addReturned(const CallBase &Call, Node &N) {
   }
 }
 
-/// The class of the method that \p Call calls.
-static std::string classOfMethod(const CallBase &Call) {
-  const Function *Callee = Call.getCalledFunction();
-  return Callee ? StringRef(qualifiedName(Callee->getName()))
-                      .rsplit("::")
-                      .first.str()
-                : "";
-}
-
 /// Notes the class of the container if \p Call moves elements from one to
 /// another: references to them go along.
 void PointsToSolver::noteMove(const CallBase &Call) {
@@ -81,7 +72,7 @@ void PointsToSolver::noteMove(const CallBase &Call) {
                                         "splice_after"};
   if (Callee && Rules.container(Call) &&
       is_contained(Moves, unscoped(qualifiedName(Callee->getName()))))
-    Moved.insert(classOfMethod(Call));
+    Moved.insert(scopeOf(*Callee));
 }
 
 void PointsToSolver::makeNode(Instruction &I) {
@@ -91,10 +82,9 @@ void PointsToSolver::makeNode(Instruction &I) {
     append_range(N.Sources, Phi->incoming_values());
   else if (const auto *Select = dyn_cast<SelectInst>(&I))
     N.Sources = {Select->getTrueValue(), Select->getFalseValue()};
-  else if (Call && Rules.container(*Call)) {
+  else if (Call && Rules.container(*Call))
     N.Container = containerOf(*Call);
-    N.ContainerClass = classOfMethod(*Call);
-  } else if (Call)
+  else if (Call)
     addReturned(*Call, N);
   else if (const auto *Extract = dyn_cast<ExtractValueInst>(&I)) {
     // A pair of an iterator and whether something was inserted.
@@ -102,7 +92,6 @@ void PointsToSolver::makeNode(Instruction &I) {
     if (!Pair || !Rules.container(*Pair))
       return;
     N.Container = containerOf(*Pair);
-    N.ContainerClass = classOfMethod(*Pair);
   } else if (!isa<LoadInst>(&I))
     return;
   Nodes.push_back(std::move(N));
@@ -334,6 +323,17 @@ bool PointsToSolver::hasOwnCallers(const Argument &Arg) {
           (F.isWeakForLinker() && !R.Sources.has(F)));
 }
 
+/// True if the elements of the container that \p N leads to stay in it.
+bool PointsToSolver::keepsElements(const Node &N) const {
+  if (Moved.empty())
+    return true;
+  const Value *V = N.V;
+  if (const auto *Pair = dyn_cast<ExtractValueInst>(V))
+    V = Pair->getAggregateOperand();
+  const Function *Method = cast<CallBase>(V)->getCalledFunction();
+  return !Method || !Moved.contains(scopeOf(*Method));
+}
+
 /// Arguments lead only to what the calls pass if all calls are known; phis lead
 /// only to their operands. An allocation is known by its class alone. True if a
 /// pointer that counted as complete no longer does.
@@ -343,7 +343,7 @@ bool PointsToSolver::findComplete() {
     for (const Node &N : Nodes) {
       const auto *Arg = dyn_cast<Argument>(N.V);
       if (Arg ? !N.Sources.empty() && hasOwnCallers(*Arg)
-              : (N.Container && !Moved.contains(N.ContainerClass)) ||
+              : (N.Container && keepsElements(N)) ||
                     isa<PHINode, SelectInst, LoadInst>(N.V))
         R.Complete.insert(N.V);
     }

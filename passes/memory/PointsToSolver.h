@@ -34,7 +34,6 @@ private:
     const llvm::Value *V;
     llvm::SmallVector<const llvm::Value *, 2> Sources;
     const llvm::Value *Container = nullptr; ///< if set, leads to its elements
-    std::string ContainerClass = "";        ///< its qualified name
     Locations Where = {};                   ///< of a load: what it reads
     unsigned Done = 0;                      ///< when it was last updated
   };
@@ -69,6 +68,7 @@ private:
   void findFilled();
   bool findsComplete(const Node &Load) const;
   bool hasOwnCallers(const llvm::Argument &Arg);
+  bool keepsElements(const Node &N) const;
   bool findComplete();
   unsigned contentAt(const Location &L, bool Unrooted);
   void collect(unsigned Number, Locations &Out);

@@ -14,21 +14,6 @@ using namespace llvm;
 
 namespace tpc {
 
-/// The pointer that \p Pointer is computed from without reading memory.
-static const Value *originOf(const Value *Pointer) {
-  while (true) {
-    if (const auto *GEP = dyn_cast<GEPOperator>(Pointer))
-      Pointer = GEP->getPointerOperand();
-    else if (const auto *Cast = dyn_cast<CastInst>(Pointer);
-             Cast && Cast->getOperand(0)->getType()->isPointerTy())
-      Pointer = Cast->getOperand(0);
-    else if (const auto *Freeze = dyn_cast<FreezeInst>(Pointer))
-      Pointer = Freeze->getOperand(0);
-    else
-      return Pointer;
-  }
-}
-
 /// True if \p T is a message that must not be changed, or a smart pointer to
 /// one.
 static bool isConstMessage(const DIType *T) {
@@ -47,19 +32,6 @@ static bool isConstMessage(const DIType *T) {
   for (const DITemplateParameter *P : Class->getTemplateParams())
     return P && isConstMessage(P->getType());
   return false;
-}
-
-/// The type of \p Arg in the source, with its qualifiers; null if it is not
-/// known.
-static const DIType *declaredType(const Argument &Arg) {
-  const DISubprogram *SP = Arg.getParent()->getSubprogram();
-  DITypeRefArray Types =
-      SP && SP->getType() ? SP->getType()->getTypeArray() : nullptr;
-  unsigned Hidden = Arg.getParent()->hasStructRetAttr() ? 1 : 0;
-  if (Types.size() == 0 ||
-      Arg.getParent()->arg_size() - Hidden != Types.size() - 1)
-    return nullptr;
-  return Types[Arg.getArgNo() - Hidden + 1];
 }
 
 Received::Received(Module &M, const CallGraphResult &Calls, DebugTypes &Debug,
@@ -88,7 +60,7 @@ bool Received::isHandedOver(const Argument &Arg) {
                    });
   if (!ByLibrary || !Arg.getType()->isPointerTy() || Arg.hasStructRetAttr())
     return false;
-  if (isConstMessage(declaredType(Arg)))
+  if (isConstMessage(DebugTypes::declared(Arg)))
     return true;
   const auto *Class = dyn_cast_or_null<DICompositeType>(Debug.pointee(&Arg));
   return Class && isMessageClass(*Class) && isOnlyRead(Arg);
@@ -207,7 +179,7 @@ bool Received::isSupported(const Value *Pointer) {
 bool Received::has(const Value *Pointer) const {
   if (Found.empty() || !Pointer)
     return false;
-  const Value *Origin = originOf(Pointer);
+  const Value *Origin = PointsTo::baseOf(Pointer);
   return isa<ConstantPointerNull, UndefValue>(Origin) || Found.contains(Origin);
 }
 

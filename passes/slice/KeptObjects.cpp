@@ -24,10 +24,15 @@ public:
                    const OverridingFunctions &Overriding, UserSources Sources)
       : M(M), Calls(Calls), Rules(Rules), Debug(Debug),
         Sources(std::move(Sources)) {
+    StringSet<> Derived;
     for (const Function *F : Overriding.Functions) {
       Derived.insert(scopeOf(*F));
       addArguments(*F);
     }
+    if (!Work.empty())
+      for (Function &F : definedFunctions(M))
+        if (Derived.contains(scopeOf(F)))
+          Methods.insert(&F);
   }
 
   SmallVector<InheritedWrite, 0> find();
@@ -51,7 +56,8 @@ private:
   const RuleMatches &Rules;
   DebugTypes &Debug;
   UserSources Sources;
-  StringSet<> Derived; ///< the classes with overriding functions
+  /// Of the classes with overriding functions.
+  SmallSetVector<const Function *, 16> Methods;
   /// Pointers to what was handed over, to its parts, and to smart pointers that
   /// were handed over, each with the class of the object.
   MapVector<const Value *, const DICompositeType *> Handed;
@@ -117,7 +123,7 @@ KeptObjectFinder::memberAt(const Value *Pointer) {
   }
   const auto *This = dyn_cast<Argument>(Pointer);
   if (!This || !Outermost || thisOf(*This->getParent()) != This ||
-      !Derived.contains(scopeOf(*This->getParent())))
+      !Methods.contains(This->getParent()))
     return std::nullopt;
   const auto *Index = dyn_cast<ConstantInt>(Outermost->getOperand(2));
   if (!Index)
@@ -161,9 +167,7 @@ void KeptObjectFinder::followUse(const Value &Pointer, const Use &U) {
 
 /// Adds what the methods read from the members.
 void KeptObjectFinder::addLoadsOfMembers() {
-  for (Function &F : definedFunctions(M)) {
-    if (!Derived.contains(scopeOf(F)))
-      continue;
+  for (const Function *F : Methods)
     for (const Instruction &I : instructions(F)) {
       const auto *Load = dyn_cast<LoadInst>(&I);
       if (!Load || !Load->getType()->isPointerTy())
@@ -175,7 +179,6 @@ void KeptObjectFinder::addLoadsOfMembers() {
         add(Load, Load);
       }
     }
-  }
 }
 
 /// True if \p I writes into a kept object; sets \p Pointer to where.

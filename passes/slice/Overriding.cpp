@@ -181,10 +181,6 @@ OverridingFunctions overridingFunctions(Module &M, const CallGraphResult &Calls,
   return Found;
 }
 
-std::string scopeOf(const Function &F) {
-  return StringRef(qualifiedName(linkageName(F))).rsplit("::").first.str();
-}
-
 SmallVector<const Argument *, 4> writtenArguments(const Function &F) {
   SmallVector<const Argument *, 4> Written;
   SmallVector<std::string, 4> Types = parameterTypes(F);

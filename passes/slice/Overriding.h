@@ -43,9 +43,6 @@ OverridingFunctions overridingFunctions(llvm::Module &M,
 llvm::SmallVector<const llvm::Argument *, 4>
 writtenArguments(const llvm::Function &F);
 
-/// The qualified name of the class or namespace that \p F is in.
-std::string scopeOf(const llvm::Function &F);
-
 /// A store, or a call of a method of another library, through which a method
 /// changes the inherited part of its object.
 struct InheritedWrite {

@@ -284,22 +284,26 @@ unsigned DebugTypes::numberOf(const DICompositeType *Class) {
   return Number;
 }
 
-const DIType *DebugTypes::ofArgument(const Argument &Arg) const {
+const DIType *DebugTypes::declared(const Argument &Arg) {
   const Function *F = Arg.getParent();
   const DISubprogram *SP = F->getSubprogram();
   if (!SP || !SP->getType())
     return nullptr;
   DITypeRefArray Types = SP->getType()->getTypeArray();
   if (Arg.hasStructRetAttr())
-    return Types.size() ? plain(Types[0]) : nullptr;
+    return Types.size() ? Types[0] : nullptr;
   unsigned Hidden = F->hasStructRetAttr() ? 1 : 0;
   // If objects are passed in registers, one takes several arguments and the
   // numbers do not match.
   if (Types.size() == 0 || F->arg_size() - Hidden != Types.size() - 1)
     return nullptr;
-  const DIType *T = plain(Types[Arg.getArgNo() - Hidden + 1]);
+  return Types[Arg.getArgNo() - Hidden + 1];
+}
+
+const DIType *DebugTypes::ofArgument(const Argument &Arg) const {
+  const DIType *T = plain(declared(Arg));
   // An object that cannot be copied byte by byte is passed by its address.
-  bool IsObject = Arg.hasByValAttr() ||
+  bool IsObject = Arg.hasStructRetAttr() || Arg.hasByValAttr() ||
                   (T && (T->getFlags() & DINode::FlagTypePassByReference));
   return IsObject ? T : dereferenced(T);
 }

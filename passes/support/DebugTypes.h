@@ -28,6 +28,10 @@ public:
   /// types.
   static const llvm::DIType *dereferenced(const llvm::DIType *T);
 
+  /// The type of \p Arg as it is written, with its qualifiers, or of the result
+  /// that it is the place of; null if it is not known.
+  static const llvm::DIType *declared(const llvm::Argument &Arg);
+
   /// The type of the object that \p Pointer points to; null if it is not known.
   const llvm::DIType *pointee(const llvm::Value *Pointer);
 

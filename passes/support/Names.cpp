@@ -285,6 +285,10 @@ const Argument *thisOf(const Function &F) {
   return HasObject ? F.getArg(N) : nullptr;
 }
 
+std::string scopeOf(const Function &F) {
+  return StringRef(qualifiedName(linkageName(F))).rsplit("::").first.str();
+}
+
 bool endsLife(const CallBase &Call) {
   const Function *F = Call.getCalledFunction();
   return F && F->isDeclarationForLinker() &&

@@ -27,6 +27,9 @@ std::string className(llvm::StringRef Mangled);
 /// \p Name without scopes.
 llvm::StringRef unscoped(llvm::StringRef Name);
 
+/// `ns::Class`, the qualified name of the class or namespace that \p F is in.
+std::string scopeOf(const llvm::Function &F);
+
 /// `above()`: without scopes and parameters, for people.
 std::string shortName(const llvm::Function &F);
 
