@@ -177,13 +177,13 @@ static cl::opt<unsigned> MaxSeparated(
 /// planned.
 static Findings analyseSafely(Module &M, ModuleAnalysisManager &AM,
                               const Options &Opts) {
-  Budget Limits(Opts.MaxSeconds, Opts.MaxMemory);
   auto Out = std::make_unique<Findings>();
   bool Survived = runGuarded([&] {
     const RuleTables &Rules = AM.getResult<RuleTableAnalysis>(M);
     Out->Failure = Rules.Error;
     if (!Out->Failure.empty())
       return;
+    Budget Limits(Opts.MaxSeconds, Opts.MaxMemory);
     AnalysedModule Analysed(M, Opts, Rules.Tables);
     auto Own = std::make_unique<OwnAnalyses>(Opts, Rules);
     // A copy is another module: nothing is known of it.

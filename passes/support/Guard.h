@@ -12,9 +12,10 @@ enum class Failure { None, Crash, Overflow, Fatal, Allocation, Memory, Time };
 /// Fails in this way; Memory and Time run until the budget is spent.
 void fail(Failure Kind);
 
-/// Runs \p F; false if it crashed, ran out of stack or memory, or hit an
-/// internal error of LLVM (assertion, report_fatal_error). After a failure,
-/// nothing that \p F made may be used or destroyed.
+/// Runs \p F in a thread of its own and waits for it; false if it crashed, ran
+/// out of stack or memory, or hit an internal error of LLVM (assertion,
+/// report_fatal_error). After a failure, nothing that \p F made may be used or
+/// destroyed.
 ///
 /// If LLVM was built without assertions, a violated assertion has undefined
 /// behaviour. A call that never returns is not ended.
