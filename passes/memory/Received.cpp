@@ -2,10 +2,12 @@
 #include "memory/Received.h"
 
 #include "calls/SimpleCallGraph.h"
+#include "memory/PointerCopies.h"
 #include "support/Functions.h"
 #include "support/Names.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/Analysis/ValueTracking.h"
 #include "llvm/BinaryFormat/Dwarf.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Operator.h"
@@ -27,16 +29,14 @@ static bool isConstMessage(const DIType *T) {
     return false;
   if (isMessageClass(*Class))
     return IsConst;
-  if (!isSmartPointer(Class) && !Class->getName().starts_with("MessageEvent<"))
-    return false;
-  for (const DITemplateParameter *P : Class->getTemplateParams())
-    return P && isConstMessage(P->getType());
-  return false;
+  return (isSmartPointer(Class) ||
+          Class->getName().starts_with("MessageEvent<")) &&
+         isConstMessage(firstArgumentOf(*Class));
 }
 
 Received::Received(Module &M, const CallGraphResult &Calls, DebugTypes &Debug,
                    const LocationTypes &Types, PointsTo &Pointers,
-                   const AccessIndex &Accesses, UserSources Own)
+                   AccessIndex &Accesses, UserSources Own)
     : Calls(Calls), Debug(Debug), Types(Types), Pointers(Pointers),
       Accesses(Accesses), Sources(std::move(Own)) {
   for (const Function &F : definedFunctions(M))
@@ -54,10 +54,9 @@ Received::Received(Module &M, const CallGraphResult &Calls, DebugTypes &Debug,
 /// not change it.
 bool Received::isHandedOver(const Argument &Arg) {
   const Function &F = *Arg.getParent();
-  bool ByLibrary = !Calls.mentions(&F).empty() ||
-                   any_of(Calls.callers(&F), [&](const CallBase *Call) {
-                     return !Sources.has(*Call->getFunction());
-                   });
+  bool ByLibrary = any_of(Calls.callers(&F), [&](const CallBase *Call) {
+    return !Sources.has(*Call->getFunction());
+  });
   if (!ByLibrary || !Arg.getType()->isPointerTy() || Arg.hasStructRetAttr())
     return false;
   if (isConstMessage(DebugTypes::declared(Arg)))
@@ -95,40 +94,62 @@ bool Received::isOnlyRead(const Argument &Arg) {
   return true;
 }
 
-/// True for the classes in which std::bind, boost::bind and std::thread keep
-/// what the program passes.
-static bool keepsBound(const DICompositeType &Class) {
-  std::string Name = DebugTypes::identifierOf(Class);
+/// True for the classes in which std::bind, boost::bind and threads keep what
+/// the program passes.
+static bool keepsBound(StringRef Name) {
   return any_of(
-      ArrayRef<StringRef>{"_ZTSN5boost3_bi6bind_tI", "_ZTSSt5_BindI",
-                          "_ZTSNSt6thread"},
-      [&](StringRef Begin) { return StringRef(Name).starts_with(Begin); });
+      ArrayRef<StringRef>{"boost::_bi::", "boost::detail::thread_data",
+                          "std::_Bind", "std::_Head_base", "std::_Tuple_impl",
+                          "std::thread", "std::tuple"},
+      [&](StringRef Begin) { return Name.starts_with(Begin); });
 }
 
 /// True if the program made what is at \p L: a local, a member of one of its
-/// classes, an element of a container, or what it bound to the callback.
+/// classes, an element of a container, or what it bound to a callback.
 bool Received::isOwn(const Location &L) {
-  if (isa_and_nonnull<GlobalVariable>(L.Root) || L.isElement())
-    return true;
+  bool InFunction = false;
+  for (const Step &S : L.Path) {
+    if (!S.isField())
+      continue;
+    const DICompositeType *Class = Types.sourceClassOf(S);
+    StringRef Name = plainClassName(*Types.classOf(S));
+    if (keepsBound(Name) ||
+        (Class && Class->getFile() && Sources.has(Class->getFile())))
+      return true;
+    InFunction |= Name.ends_with("function_buffer") || Name == "std::_Any_data";
+  }
+  // A function object and its argument are not always told apart.
+  if (InFunction)
+    return false;
   const auto *Root = dyn_cast_or_null<Instruction>(L.Root);
-  return (Root && Sources.has(*Root->getFunction())) ||
-         any_of(L.Path, [&](const Step &S) {
-           const DICompositeType *Class =
-               S.isField() ? Types.sourceClassOf(S) : nullptr;
-           return Class &&
-                  ((Class->getFile() && Sources.has(Class->getFile())) ||
-                   keepsBound(*Class));
-         });
+  return isa_and_nonnull<GlobalVariable>(L.Root) || L.isElement() ||
+         (Root && Sources.has(*Root->getFunction()));
 }
 
 /// True if \p Call, in a library, passes a message for argument \p N that is
-/// not seen to be the program's: algorithms and factories pass on what the
-/// program gave them.
+/// not the program's: algorithms, factories and threads pass on what the
+/// program gave them. A smart pointer is the program's if any is from which it
+/// was copied.
 bool Received::handsOver(const CallBase &Call, unsigned N) {
-  return N < Call.arg_size() && !Sources.has(*Call.getFunction()) &&
-         none_of(
-             Pointers.resolve(Call.getArgOperand(N), false),
-             [&](const Location &L) { return isOwn(L); });
+  if (N >= Call.arg_size() || Sources.has(*Call.getFunction()))
+    return false;
+  const Value *Arg = Call.getArgOperand(N);
+  auto IsOwn = [&](const Location &L) { return isOwn(L); };
+  if (any_of(Pointers.resolve(Arg, false), IsOwn))
+    return false;
+  if (!isSmartPointer(Debug.pointee(Arg)))
+    return true;
+  PointerCopies Copies(Pointers, Accesses);
+  Locations Kept = Pointers.resolve(Arg, true);
+  for (size_t Next = 0; Next < Kept.size(); ++Next) {
+    const Location L = Kept[Next];
+    if (IsOwn(L))
+      return false;
+    for (const StoreInst *Store : Copies.storesTo(L, getUnderlyingObject(Arg)))
+      for (const Location &Source : Copies.sourcesOf(Store->getValueOperand()))
+        addTo(Kept, Source);
+  }
+  return !Kept.empty();
 }
 
 /// Adds the pointers that \p Pointer can be, or be a part of.

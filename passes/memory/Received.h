@@ -31,7 +31,7 @@ class Received {
 public:
   Received(llvm::Module &M, const CallGraphResult &Calls, DebugTypes &Debug,
            const LocationTypes &Types, PointsTo &Pointers,
-           const AccessIndex &Accesses, UserSources Sources);
+           AccessIndex &Accesses, UserSources Sources);
 
   /// True if \p Pointer, where it is not null, only leads to what other
   /// processes filled.
@@ -49,7 +49,7 @@ private:
   DebugTypes &Debug;
   const LocationTypes &Types;
   PointsTo &Pointers;
-  const AccessIndex &Accesses;
+  AccessIndex &Accesses;
   UserSources Sources;
   /// Arguments, phis, selects and loads; all others are computed from those.
   llvm::SmallSetVector<const llvm::Value *, 16> Found;

@@ -128,14 +128,16 @@ SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome,
 
 /// True if \p Compare, of which one operand is computed as \p How says, has no
 /// threshold: a formula is compared with a constant, or with a value that is in
-/// the formula.
+/// the formula. A remainder that is equal to a constant says how often
+/// something is done.
 static bool hasNoThreshold(const CmpInst &Compare, unsigned Operand,
                            const Transform &How) {
   if (!How.Variables)
     return false;
   const Value *Other = Compare.getOperand(1 - Operand);
   if (const auto *C = dyn_cast<Constant>(Other))
-    return !(How.isDifference() && C->isZeroValue()) && !How.isRemainder();
+    return !(How.isDifference() && C->isZeroValue()) &&
+           !(How.isRemainder() && Compare.isEquality());
   return isComputedFrom(Compare.getOperand(Operand), Other);
 }
 

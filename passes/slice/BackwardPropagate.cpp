@@ -6,6 +6,7 @@
 #include "calls/SimpleCallGraph.h"
 #include "control/IfStatements.h"
 #include "control/Throws.h"
+#include "memory/PointerCopies.h"
 #include "memory/VisibleWrites.h"
 #include "slice/ExternCallFinder.h"
 #include "support/Budget.h"
@@ -14,6 +15,7 @@
 
 #include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/ADT/Statistic.h"
+#include "llvm/Analysis/CFG.h"
 #include "llvm/Analysis/ValueTracking.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Module.h"
@@ -100,7 +102,8 @@ private:
   void enterThrowers(CallBase &Call);
   void enterDerived(const Value *Pointer, bool IntoCallees = false);
   void enterContents(const Value *Pointer, Instruction &At, bool IsOfCaller);
-  void enterTarget(const Value *Pointer);
+  void enterTarget(const Value *Pointer, Instruction &At);
+  bool isTooLate(const Instruction &Write) const;
   void enterPublisher(const Value *Object);
   void enterReachable(CallBase &Call);
 
@@ -126,6 +129,9 @@ private:
   SmallPtrSet<const Value *, 16> SeenPointers[2];
   /// Writes of what an exposing statement shows that have been decided.
   SmallPtrSet<const Instruction *, 16> Settled;
+  /// The exposing statement that shows what a smart pointer leads to, while
+  /// that is entered.
+  const Instruction *ShownAt = nullptr;
   SmallVector<Item, 0> Next; ///< the items of the next round
   unsigned Round = 1;
   unsigned Current = 0; ///< exposing statement of the current item
@@ -308,6 +314,13 @@ void Slicer::enterThrowers(CallBase &Call) {
       enter(Inner, isThrow(*Inner) ? Runs : Throwing, Why::Throws);
 }
 
+/// True if \p Write writes what a smart pointer leads to, but only after it was
+/// shown.
+bool Slicer::isTooLate(const Instruction &Write) const {
+  return ShownAt && ShownAt->getFunction() == Write.getFunction() &&
+         !isPotentiallyReachable(&Write, ShownAt);
+}
+
 /// What is written through \p Pointer and what is computed from it matters,
 /// with \p IntoCallees also in the functions that get it.
 void Slicer::enterDerived(const Value *Pointer, bool IntoCallees) {
@@ -331,6 +344,8 @@ void Slicer::enterDerived(const Value *Pointer, bool IntoCallees) {
     const auto *Call = dyn_cast<CallBase>(I);
     if (isa<GetElementPtrInst>(I))
       enterDerived(I, IntoCallees);
+    else if (isTooLate(*I))
+      continue;
     else if (IsStoredTo || isa<MemTransferInst>(I) ||
              (isa<MemSetInst>(I) && !Settled.contains(I)))
       enter(I, Gives, Why::Writes);
@@ -397,43 +412,45 @@ void Slicer::enterContents(const Value *Pointer, Instruction &At,
   Settled.clear();
 }
 
-/// What the smart pointer at \p Pointer leads to matters: what is written
-/// through the pointers that are read from it, or that it took over from
-/// another one.
-void Slicer::enterTarget(const Value *Pointer) {
-  constexpr unsigned MostTakenOver = 16;
+/// What the smart pointer at \p Pointer leads to matters where \p At shows it:
+/// what is written through the pointers that are read from it, from those that
+/// it was copied from, and from copies of those.
+void Slicer::enterTarget(const Value *Pointer, Instruction &At) {
   const DIType *T = Debug.pointee(Pointer);
-  if (!isSmartPointer(T) || pointsToConst(T))
+  if (!isSmartPointer(T))
     return;
+  ShownAt = &At;
+  // Another statement may show what this one is too early for.
+  SmallPtrSet<const Value *, 16> SeenElsewhere = std::move(SeenPointers[true]);
+  SeenPointers[true].clear();
+  PointerCopies Copied(Pointers, Accesses);
   const Value *Object = getUnderlyingObject(Pointer);
-  Locations Kept = Pointers.resolve(Pointer, true);
-  for (unsigned N = 0; N < Kept.size() && N < MostTakenOver; ++N) {
-    const Location Here = Kept[N];
-    // Without a root, and in no other object, it is any of its class.
-    const bool IsAny = !Here.Root && Here.Path.size() < 2;
-    auto IsHere = [&](const Value *Place) {
-      return IsAny
-                 ? getUnderlyingObject(Place) == Object
-                 : any_of(Pointers.resolve(Place, true),
-                          [&](const Location &L) { return L.mayEqual(Here); });
-    };
-    for (LoadInst *Load : Accesses.readsOf(Here).Own)
-      if (Load->getType()->isPointerTy() && IsHere(Load->getPointerOperand()))
+  Locations Origins = Pointers.resolve(Pointer, true), Copies;
+  // Nothing is written through a pointer to const, but it was one of another
+  // type before.
+  const size_t NumShown = pointsToConst(T) ? Origins.size() : 0;
+  for (size_t N = 0; N < Origins.size(); ++N) {
+    const Location Kept = Origins[N];
+    for (LoadInst *Load : Copied.loadsFrom(Kept, Object)) {
+      if (N >= NumShown)
         enterDerived(Load, /*IntoCallees=*/true);
-    for (Instruction *Write : Accesses.writesOf(Here).Own) {
-      auto *Store = dyn_cast<StoreInst>(Write);
-      const Value *Stored = Store ? Store->getValueOperand() : nullptr;
-      if (!Stored || isa<Constant>(Stored) ||
-          !Stored->getType()->isPointerTy() ||
-          !IsHere(Store->getPointerOperand()))
-        continue;
-      enterDerived(Stored, /*IntoCallees=*/true);
-      if (const auto *From = dyn_cast<LoadInst>(Stored))
-        for (const Location &L :
-             Pointers.resolve(From->getPointerOperand(), true))
-          addTo(Kept, L);
+      for (const Location &L : Copied.copiesOf(*Load))
+        addTo(Copies, L);
+    }
+    for (StoreInst *Store : Copied.storesTo(Kept, Object)) {
+      enterDerived(Store->getValueOperand(), /*IntoCallees=*/true);
+      for (const Location &L : Copied.sourcesOf(Store->getValueOperand()))
+        addTo(Origins, L);
     }
   }
+  for (size_t N = 0; N < Copies.size(); ++N)
+    for (LoadInst *Load : Copied.loadsFrom(Location(Copies[N]), Object)) {
+      enterDerived(Load, /*IntoCallees=*/true);
+      for (const Location &L : Copied.copiesOf(*Load))
+        addTo(Copies, L);
+    }
+  SeenPointers[true] = std::move(SeenElsewhere);
+  ShownAt = nullptr;
 }
 
 /// Everything that an exposing statement shows: the contents of its arguments.
@@ -449,7 +466,7 @@ void Slicer::enterReachable(CallBase &Call) {
     if (!Arg->getType()->isPointerTy())
       continue;
     enterContents(Arg, Call, /*IsOfCaller=*/false);
-    enterTarget(Arg);
+    enterTarget(Arg, Call);
   }
 }
 
@@ -485,8 +502,10 @@ void Slicer::enterOperands(Instruction &I) {
     }
     return enterPointer(Load->getPointerOperand());
   }
-  if (auto *Copy = dyn_cast<MemTransferInst>(&I))
-    return enterMemory(Copy->getRawSource(), I);
+  if (auto *Copy = dyn_cast<MemTransferInst>(&I)) {
+    enterMemory(Copy->getRawSource(), I);
+    return enterContents(Copy->getRawSource(), I, /*IsOfCaller=*/false);
+  }
   if (auto *Fill = dyn_cast<MemSetInst>(&I)) {
     enterValue(Fill->getValue());
     return enterPointer(Fill->getRawDest());

@@ -76,11 +76,8 @@ bool KeptObjectFinder::isPart(const DIType *T) const {
   const auto *Class = dyn_cast_or_null<DICompositeType>(T);
   if (!Class)
     return false;
-  if (isSmartPointer(Class)) {
-    for (const DITemplateParameter *P : Class->getTemplateParams())
-      return isPart(DebugTypes::plain(P ? P->getType() : nullptr));
-    return false;
-  }
+  if (isSmartPointer(Class))
+    return isPart(DebugTypes::plain(firstArgumentOf(*Class)));
   std::string Mangled = DebugTypes::identifierOf(*Class);
   return !isMessageClass(*Class) && StringRef(Mangled).starts_with("_ZTS") &&
          !Rules.isTool(className(StringRef(Mangled).drop_front(4)));

@@ -26,18 +26,21 @@ bool isSmartPointer(const DIType *T) {
   return Name == "shared_ptr" || Name == "unique_ptr";
 }
 
+const DIType *firstArgumentOf(const DICompositeType &Class) {
+  for (const DITemplateParameter *P : Class.getTemplateParams())
+    return P ? P->getType() : nullptr;
+  return nullptr;
+}
+
 bool pointsToConst(const DIType *T) {
   const auto *Class = dyn_cast_or_null<DICompositeType>(T);
   if (!Class || !isSmartPointer(Class))
     return false;
-  for (const DITemplateParameter *P : Class->getTemplateParams()) {
-    const DIType *Of = P ? P->getType() : nullptr;
-    for (; isa_and_nonnull<DIDerivedType>(Of);
-         Of = cast<DIDerivedType>(Of)->getBaseType())
-      if (Of->getTag() == dwarf::DW_TAG_const_type)
-        return true;
-    return false;
-  }
+  const DIType *Of = firstArgumentOf(*Class);
+  for (; isa_and_nonnull<DIDerivedType>(Of);
+       Of = cast<DIDerivedType>(Of)->getBaseType())
+    if (Of->getTag() == dwarf::DW_TAG_const_type)
+      return true;
   return false;
 }
 

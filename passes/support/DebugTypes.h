@@ -94,6 +94,9 @@ private:
 
 /// True for std::shared_ptr, boost::shared_ptr and std::unique_ptr.
 bool isSmartPointer(const llvm::DIType *T);
+/// T of the class template A<T, ...> that \p Class is made of; null if it is
+/// not made of one.
+const llvm::DIType *firstArgumentOf(const llvm::DICompositeType &Class);
 /// True for a smart pointer through which nothing can be written.
 bool pointsToConst(const llvm::DIType *T);
 
