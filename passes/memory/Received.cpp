@@ -130,8 +130,8 @@ bool Received::isOwn(const Location &L) {
 /// not the program's: algorithms, factories and threads pass on what the
 /// program gave them. A smart pointer is the program's if any is from which it
 /// was copied.
-bool Received::handsOver(const CallBase &Call, unsigned N) {
-  if (N >= Call.arg_size() || Sources.has(*Call.getFunction()))
+bool Received::isPassedOn(const CallBase &Call, unsigned N) {
+  if (Sources.has(*Call.getFunction()))
     return false;
   const Value *Arg = Call.getArgOperand(N);
   auto IsOwn = [&](const Location &L) { return isOwn(L); };
@@ -150,6 +150,14 @@ bool Received::handsOver(const CallBase &Call, unsigned N) {
         addTo(Kept, Source);
   }
   return !Kept.empty();
+}
+
+/// isPassedOn(), found once for each call.
+bool Received::handsOver(const CallBase &Call, unsigned N) {
+  auto [It, IsNew] = PassedOn.try_emplace(&Call.getArgOperandUse(N));
+  if (IsNew)
+    It->second = isPassedOn(Call, N);
+  return It->second;
 }
 
 /// Adds the pointers that \p Pointer can be, or be a part of.
@@ -191,9 +199,9 @@ bool Received::isSupported(const Value *Pointer) {
   bool FromLibrary = isHandedOver(Arg);
   return (FromLibrary || Calls.allCallsKnown(F)) &&
          all_of(Calls.callers(&F), [&](const CallBase *Call) {
-           return (FromLibrary && handsOver(*Call, Arg.getArgNo())) ||
-                  (Arg.getArgNo() < Call->arg_size() &&
-                   has(Call->getArgOperand(Arg.getArgNo())));
+           return Arg.getArgNo() < Call->arg_size() &&
+                  (has(Call->getArgOperand(Arg.getArgNo())) ||
+                   (FromLibrary && handsOver(*Call, Arg.getArgNo())));
          });
 }
 

@@ -20,7 +20,7 @@
 #include "memory/PointsTo.h"
 #include "support/DebugTypes.h"
 
-#include "llvm/ADT/DenseSet.h"
+#include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/SetVector.h"
 
 namespace tpc {
@@ -41,6 +41,7 @@ private:
   bool isHandedOver(const llvm::Argument &Arg);
   bool isOnlyRead(const llvm::Argument &Arg);
   bool isOwn(const Location &L);
+  bool isPassedOn(const llvm::CallBase &Call, unsigned N);
   bool handsOver(const llvm::CallBase &Call, unsigned N);
   void addUsersOf(const llvm::Value *Pointer);
   bool isSupported(const llvm::Value *Pointer);
@@ -51,6 +52,8 @@ private:
   PointsTo &Pointers;
   AccessIndex &Accesses;
   UserSources Sources;
+  /// The result of isPassedOn() for arguments of calls.
+  llvm::DenseMap<const llvm::Use *, bool> PassedOn;
   /// Arguments, phis, selects and loads; all others are computed from those.
   llvm::SmallSetVector<const llvm::Value *, 16> Found;
 };
