@@ -3,8 +3,9 @@
 // A callback gets a message, and a service its request, from another process.
 // Such an object is one of its own: it is none of those of the same class that
 // the link unit fills itself, and if the callback does not change it, nothing
-// in the link unit writes what is read there. Messages that a callback may
-// change count if it does not; those behind a smart pointer do not count.
+// in the link unit writes what is read there. A message that a callback may
+// change counts as received if the callback does not change it, unless it is
+// behind a smart pointer.
 //
 // Pointers to them are arguments of callbacks, and what is computed and loaded
 // from those, also in the functions that only get such pointers. Found as the

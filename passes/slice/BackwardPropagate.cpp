@@ -428,15 +428,19 @@ void Slicer::enterTarget(const Value *Pointer, Instruction &At) {
   Locations Origins = Pointers.resolve(Pointer, true), Copies;
   // Nothing is written through a pointer to const, but it was one of another
   // type before.
-  const size_t NumShown = pointsToConst(T) ? Origins.size() : 0;
-  for (size_t N = 0; N < Origins.size(); ++N) {
-    const Location Kept = Origins[N];
+  const size_t NumConst = pointsToConst(T) ? Origins.size() : 0;
+  // By value: the lists grow.
+  auto EnterLoads = [&](Location Kept, bool IsWritable) {
     for (LoadInst *Load : Copied.loadsFrom(Kept, Object)) {
-      if (N >= NumShown)
+      if (IsWritable)
         enterDerived(Load, /*IntoCallees=*/true);
       for (const Location &L : Copied.copiesOf(*Load))
         addTo(Copies, L);
     }
+  };
+  for (size_t N = 0; N < Origins.size(); ++N) {
+    const Location Kept = Origins[N];
+    EnterLoads(Kept, N >= NumConst);
     for (StoreInst *Store : Copied.storesTo(Kept, Object)) {
       enterDerived(Store->getValueOperand(), /*IntoCallees=*/true);
       for (const Location &L : Copied.sourcesOf(Store->getValueOperand()))
@@ -444,11 +448,7 @@ void Slicer::enterTarget(const Value *Pointer, Instruction &At) {
     }
   }
   for (size_t N = 0; N < Copies.size(); ++N)
-    for (LoadInst *Load : Copied.loadsFrom(Location(Copies[N]), Object)) {
-      enterDerived(Load, /*IntoCallees=*/true);
-      for (const Location &L : Copied.copiesOf(*Load))
-        addTo(Copies, L);
-    }
+    EnterLoads(Copies[N], /*IsWritable=*/true);
   SeenPointers[true] = std::move(SeenElsewhere);
   ShownAt = nullptr;
 }
