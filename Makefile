@@ -1,4 +1,4 @@
-.PHONY: setup demo demo-water demo-navigation check test test-llvm22 format lint tidy fuzz bench coverage help
+.PHONY: setup package test-package audit demo demo-water demo-navigation demo-ros2 check test test-llvm22 format lint tidy fuzz bench coverage help
 PYTHON = .venv/bin/python
 
 help:         ## this list
@@ -6,6 +6,10 @@ help:         ## this list
 
 setup:        ## what a user needs: packages, .venv, passes; quick when done before
 	@tools/setup
+
+package:      ## the wheel and the Debian package, in out/
+	@tools/setup
+	tools/package
 
 demo:         ## a robot with a wrong parameter, and its name
 	@tools/setup demo
@@ -19,6 +23,10 @@ demo-navigation: ## the same with a ground robot in Python and C++, its controll
 	@tools/setup demo
 	$(PYTHON) examples/navigation/demo.py --out out/demo-navigation
 
+demo-ros2:    ## the first robot as nodes of rclpy, on a ROS 2 graph; brings its own ROS 2
+	@tools/setup ros2
+	$(PYTHON) examples/image_capture_ros2/demo.py --out out/demo-ros2
+
 check:        ## in two minutes: lint, the passes' tests, the Python tests that your change touches
 	@tools/setup test
 	@tools/check
@@ -29,6 +37,13 @@ test:         ## all tests: passes, Python, a real ROS graph
 
 test-llvm22:  ## the passes and their tests with LLVM 22, in build-22
 	tools/test-llvm22
+
+test-package: ## installs both packages in empty places and tries them there: half an hour
+	@tools/setup test
+	tools/test-package
+
+audit:        ## known faults of the locked Python packages, where the database is reached
+	tools/audit
 
 format:       ## the sources in the form that lint asks for
 	@tools/setup test

@@ -9,7 +9,7 @@
 # CMake compiles and links. If it cannot do that, it prints one warning and does not change the
 # build.
 #
-#   TPC_CLANG_VERSION  release of clang, lld and LLVM (19)
+#   TPC_CLANG_VERSION  release of clang, lld and LLVM (the one that the plugins are for)
 #   TPC_RULES          the user's own file of rules
 #   TPC_PROFILE        thesis or default
 #   TPC_MAX_SECONDS    processor time that the analysis of a link unit may take (120)
@@ -18,6 +18,7 @@
 #   TPC_TESTS          also analyse test programs, and insert reports into them
 #   TPC_DISABLE        do not change this package
 #   TPC_LEFT_ALONE     folders of packages that are not changed at all, not even their compiler
+#   TPC_BASE           folder of `pytpc build`; see tpc-devel.cmake
 #
 # The property TPC_INSTRUMENT of a target keeps reports out of it if it is OFF, and inserts them
 # into a test program if it is ON. tpc-targets.cmake sets up the targets.
@@ -26,6 +27,7 @@ cmake_policy(PUSH)
 cmake_policy(VERSION 3.16)
 include("${CMAKE_CURRENT_LIST_DIR}/tpc-compilers.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/tpc-targets.cmake")
+include("${CMAKE_CURRENT_LIST_DIR}/tpc-devel.cmake")
 
 set(_tpc_file "${CMAKE_CURRENT_LIST_FILE}")
 get_filename_component(_tpc_prefix "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE)
@@ -33,8 +35,12 @@ set(_tpc_plugin "${_tpc_prefix}/lib/tpc/TpcPasses.so")
 set(_tpc_defer "${_tpc_prefix}/lib/tpc/TpcDefer.so")
 set(_tpc_log "${_tpc_prefix}/lib/libtpc_log.so")
 set(_tpc_flags_file "${_tpc_prefix}/share/tpc/flags")
+set(_tpc_release 19)
+if(EXISTS "${_tpc_prefix}/share/tpc/clang-version")
+  file(STRINGS "${_tpc_prefix}/share/tpc/clang-version" _tpc_release LIMIT_COUNT 1)
+endif()
 if(NOT TPC_CLANG_VERSION)
-  set(TPC_CLANG_VERSION 19)
+  set(TPC_CLANG_VERSION ${_tpc_release})
 endif()
 # Sets `text` to the flags of one kind in share/tpc/flags, quoted for a shell. That file says what
 # they are for.
@@ -334,6 +340,9 @@ endmacro()
 
 get_property(_tpc_probe GLOBAL PROPERTY IN_TRY_COMPILE)
 get_property(_tpc_enabled GLOBAL PROPERTY ENABLED_LANGUAGES)
+if(TPC_BASE AND NOT _tpc_probe AND NOT _tpc_enabled)
+  _tpc_find_devel_spaces()
+endif()
 if("${CMAKE_SOURCE_DIR}" IN_LIST TPC_LEFT_ALONE)
   set(_tpc_left_alone TRUE)
   # Also the package's checks, which are projects of their own.

@@ -4,6 +4,8 @@
 #include "llvm/ADT/StringExtras.h"
 #include "llvm/Support/JSON.h"
 
+#include <limits>
+
 using namespace llvm;
 
 namespace tpc {
@@ -52,6 +54,9 @@ private:
   Error texts(const json::Value &V, StringRef Place,
               std::vector<std::string> &Out);
   Error truth(const json::Value &V, StringRef Place, bool &Out);
+  Error factor(const json::Value &V, StringRef Place, double &Out);
+  Error numbers(const json::Value &V, StringRef Place,
+                std::vector<unsigned> &Out);
 
   StringRef Origin, Profile;
 };
@@ -67,7 +72,11 @@ static constexpr StringLiteral TopicKeys[] = {"name"};
 static constexpr StringLiteral NameKeys[] = {"parts", "to", "absolute"};
 static constexpr StringLiteral NameRequired[] = {"parts", "to"};
 static constexpr StringLiteral TextKeys[] = {"relation"};
-static constexpr StringLiteral HeldKeys[] = {"relation", "value"};
+static constexpr StringLiteral HeldKeys[] = {"relation", "value", "per_second",
+                                             "nanoseconds"};
+static constexpr StringLiteral AccessorKeys[] = {"type"};
+static constexpr StringLiteral CallbackKeys[] = {"callbacks", "name"};
+static constexpr StringLiteral CallbackRequired[] = {"callbacks"};
 
 static const Section Sections[] = {
     {"reads", Rule::Read, ReadKeys, ReadRequired},
@@ -75,7 +84,9 @@ static const Section Sections[] = {
     {"topics", Rule::Topic, TopicKeys, TopicKeys},
     {"handles", Rule::Naming, NameKeys, NameRequired},
     {"names", Rule::Naming, NameKeys, NameRequired},
-    {"accessors", Rule::Accessor, {}, {}},
+    {"accessors", Rule::Accessor, AccessorKeys, {}},
+    {"identities", Rule::Identity, {}, {}},
+    {"callbacks", Rule::Callback, CallbackKeys, CallbackRequired},
     {"configs", Rule::Config, ConfigKeys, {}},
     {"text", Rule::Text, TextKeys, TextKeys},
     {"held", Rule::Held, HeldKeys, TextKeys},
@@ -134,6 +145,28 @@ Error Reader::truth(const json::Value &V, StringRef Place, bool &Out) {
   if (!B)
     return wrong(Place, "must be true or false");
   Out = *B;
+  return Error::success();
+}
+
+Error Reader::factor(const json::Value &V, StringRef Place, double &Out) {
+  std::optional<double> N = V.getAsNumber();
+  if (!N || !(*N > 0) || !(*N < std::numeric_limits<double>::infinity()))
+    return wrong(Place, "must be a number greater than 0");
+  Out = *N;
+  return Error::success();
+}
+
+Error Reader::numbers(const json::Value &V, StringRef Place,
+                      std::vector<unsigned> &Out) {
+  const json::Array *List = V.getAsArray();
+  if (!List || List->empty())
+    return wrong(Place, "must be a non-empty list");
+  for (const auto &[N, Item] : enumerate(*List)) {
+    std::optional<unsigned> One;
+    if (Error E = number(Item, (Place + "/" + Twine(N)).str(), One))
+      return E;
+    Out.push_back(*One);
+  }
   return Error::success();
 }
 
@@ -196,6 +229,18 @@ Error Reader::field(StringRef Key, const json::Value &V, StringRef Place,
   }
   if (Key == "relation")
     return text(V, Place, R.Relation);
+  if (Key == "type")
+    return text(V, Place, R.Type);
+  if (Key == "slot")
+    return number(V, Place, R.Slot);
+  if (Key == "symbol")
+    return text(V, Place, R.Symbol);
+  if (Key == "per_second")
+    return factor(V, Place, R.PerSecond);
+  if (Key == "nanoseconds")
+    return number(V, Place, R.Nanoseconds);
+  if (Key == "callbacks")
+    return numbers(V, Place, R.Callbacks);
   assert(Key == "parts" && "a key that no section has");
   const json::Array *Parts = V.getAsArray();
   if (!Parts || Parts->empty())
@@ -212,7 +257,7 @@ Error Reader::row(const json::Value &V, const Section &In, StringRef Place,
   if (!Row)
     return wrong(Place, "must be an object");
   static constexpr StringLiteral Common[] = {"function", "method", "arity",
-                                             "types"};
+                                             "types",    "slot",   "symbol"};
   Rule R;
   R.Kind = In.Kind;
   std::vector<std::string> Profiles;

@@ -38,14 +38,35 @@ Value *objectOf(const CallBase &Call, const Rule &R) {
   return Index < Call.arg_size() ? Call.getArgOperand(Index) : nullptr;
 }
 
+Value *holderOf(const CallBase &Call, const Rule &R) {
+  if (R.Method)
+    return objectOf(Call, R);
+  if (R.Relation == "into")
+    return Call.hasStructRetAttr() ? Call.getArgOperand(0) : nullptr;
+  return argument(Call, R, 0);
+}
+
+static std::string slotKey(StringRef Class, unsigned Slot) {
+  return (Class + " " + Twine(Slot)).str();
+}
+
+StringRef Rules::symbolAt(StringRef Class, unsigned Slot) const {
+  auto It = Symbols.find(slotKey(Class, Slot));
+  return It == Symbols.end() ? StringRef() : StringRef(It->second);
+}
+
 Expected<Rules> Rules::load(const Options &Opts) {
   Rules R;
   auto Add = [&](StringRef Text, StringRef Origin) -> Error {
     Expected<RuleFile> File = parseRules(Text, Origin, Opts.Profile);
     if (!File)
       return File.takeError();
-    for (Rule &Row : File->Rows)
+    for (Rule &Row : File->Rows) {
+      if (Row.Slot && !Row.Symbol.empty())
+        R.Symbols[slotKey(StringRef(Row.Function).rsplit("::").first,
+                          *Row.Slot)] = Row.Symbol;
       R.ByName[Row.Function].push_back(std::move(Row));
+    }
     append_range(R.OpaquePrefixes, File->Opaque);
     append_range(R.KeptPrefixes, File->Kept);
     append_range(R.CountingPrefixes, File->Counting);
@@ -116,7 +137,7 @@ static bool hasTypes(const Function &F, const Rule &R) {
   return Types.size() == R.Types.size() &&
          all_of(zip(Types, R.Types), [](auto P) {
            auto [Has, Wants] = P;
-           return Wants == "*" || plainType(Has) == Wants;
+           return Wants == "*" || Has == Wants || plainType(Has) == Wants;
          });
 }
 
@@ -139,6 +160,10 @@ const Rule *Rules::rowOf(const Function &F, StringRef Name) const {
       return &R;
   }
   return nullptr;
+}
+
+bool Rules::hasRow(StringRef Mangled) const {
+  return ByName.contains(qualifiedName(Mangled));
 }
 
 const Rules::Match &Rules::match(const Function &F) const {
@@ -217,7 +242,11 @@ const Rule *RuleMatches::match(const CallBase &Call) const {
 const RuleMatches::Inlined &RuleMatches::inlined(const DISubprogram &F) const {
   auto [It, New] = InlinedFunctions.try_emplace(&F);
   if (New) {
-    std::string Name = qualifiedName(F.getLinkageName());
+    StringRef Mangled = F.getLinkageName();
+    if (const DISubprogram *Declared = F.getDeclaration();
+        Mangled.empty() && Declared)
+      Mangled = Declared->getLinkageName();
+    std::string Name = qualifiedName(Mangled);
     It->second = {Tables->isTransparent(Name), Tables->isCounting(Name),
                   Tables->isSilent(Name)};
   }

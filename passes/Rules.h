@@ -44,6 +44,8 @@ struct Rule {
     Text,     ///< compares or copies text
     Held,     ///< puts a number into an object, or takes it out
     Property, ///< says something about a list or struct, such as its size
+    Identity, ///< returns the name of a parameter that an object holds
+    Callback, ///< keeps functions that it calls later
   };
   /// A part of the name that a row of kind Naming makes.
   struct Part {
@@ -79,6 +81,23 @@ struct Rule {
   /// is to be compared with zero, `copy` if the call copies text. For an object
   /// that holds a number: `into` or `outof`. For a property: its name.
   std::string Relation;
+  /// For an object that holds a number: how many units of the number of the
+  /// call are one of those that are held: 1e9 for nanoseconds.
+  double PerSecond = 1;
+  /// For operators of such objects: where an object has its nanoseconds, an
+  /// integer of 64 bits, in bytes; unset: it begins with two integers of 32
+  /// bits, seconds and nanoseconds.
+  std::optional<unsigned> Nanoseconds;
+  /// The type of the result, where neither the function's name nor the code
+  /// tells; empty if they do.
+  std::string Type;
+  /// The arguments that are functions. If Name is set, they are called with an
+  /// object that holds this parameter; otherwise what they return is seen.
+  std::vector<unsigned> Callbacks;
+  /// For a virtual function whose class the debug information may lack: its
+  /// number in the table of virtual functions, and its mangled name.
+  std::optional<unsigned> Slot;
+  std::string Symbol;
 };
 
 /// A method of a container.
@@ -93,6 +112,11 @@ llvm::Value *argument(const llvm::CallBase &Call, const Rule &R,
 
 /// The `this` operand of \p Call; null if the function is not a method.
 llvm::Value *objectOf(const llvm::CallBase &Call, const Rule &R);
+
+/// The object that \p Call, described by a row of kind Held, puts a number into
+/// or takes one out of: `this`, or what a function that is not a method makes;
+/// null if that is not known.
+llvm::Value *holderOf(const llvm::CallBase &Call, const Rule &R);
 
 class Rules {
 public:
@@ -110,6 +134,12 @@ public:
     std::optional<ContainerMethod> Container;
   };
   const Match &match(const llvm::Function &F) const;
+  /// The mangled name that a row gives the virtual function in \p Slot of the
+  /// class with the qualified name \p Class; empty if none does.
+  llvm::StringRef symbolAt(llvm::StringRef Class, unsigned Slot) const;
+  /// True if there are rows for functions with the qualified name of the
+  /// function \p Mangled.
+  bool hasRow(llvm::StringRef Mangled) const;
   /// True if the class \p Name is in one of the opaque namespaces.
   bool isOpaque(llvm::StringRef Name) const;
   /// True if comparisons inside a function of this qualified name count as
@@ -150,6 +180,7 @@ private:
   llvm::StringSet<> ContainerClasses, ReadingMethods, Transparent;
   /// Cached by mangled name, so that each name is demangled once.
   mutable llvm::StringMap<Match> Known;
+  llvm::StringMap<std::string> Symbols; ///< by class and slot: `ns::Class 7`
 };
 
 /// The tables of a link; if they cannot be read, empty tables and the reason.

@@ -3,7 +3,7 @@
 
 #include "Clock.h"
 #include "Modes.h"
-#include "ros1/RosControl.h"
+#include "Ros.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 #include "Clock.h"
 #include "Edges.h"
 #include "Modes.h"
+#include "Ros.h"
 #include "Runtime.h"
-#include "ros1/RosControl.h"
 
 #include <algorithm>
 #include <cmath>

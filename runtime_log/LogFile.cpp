@@ -1,7 +1,7 @@
 //===- LogFile.cpp --------------------------------------------------------===//
 #include "LogFile.h"
 
-#include "ros1/RosControl.h"
+#include "Ros.h"
 
 #include <algorithm>
 #include <cstring>

@@ -45,4 +45,14 @@ __attribute__((visibility("default"))) void
 log_read_of(char *key, const void *handle, const void *name, bool text,
             const void *object, unsigned long size) noexcept;
 
+/// The same for a node of ROS 2, which has dots in the names of its parameters.
+///
+/// \param node   the node's full name, such as `/robot1/guard`; null or empty
+/// if
+///               it is not known: nothing is reported then
+/// \param object null if the read is in no method
+__attribute__((visibility("default"))) void
+log_read_in(char *key, const char *node, const void *name, bool text,
+            const void *object, unsigned long size) noexcept;
+
 #endif // TPC_LOGONE_H

@@ -3,7 +3,7 @@
 
 #include "Clock.h"
 #include "Layout.h"
-#include "ros1/RosControl.h"
+#include "Ros.h"
 
 #include <algorithm>
 #include <cctype>
@@ -22,19 +22,37 @@ std::string errorText(int Error) {
   return strerror_r(Error, Buffer, sizeof(Buffer));
 }
 
+/// Empty without a home: then a folder of this user's own in /tmp is used.
 static std::string folderOf(const Config &C) {
   if (!C.Folder.empty())
     return C.Folder;
   if (const char *Home = std::getenv("ROS_HOME"); Home && *Home)
     return std::string(Home) + "/tpc";
-  const char *Home = std::getenv("HOME");
-  return std::string(Home ? Home : "/tmp") + "/.ros/tpc";
+  if (const char *Home = std::getenv("HOME"); Home && *Home)
+    return std::string(Home) + "/.ros/tpc";
+  return "";
+}
+
+/// In /tmp anybody can make a folder or a link of any name before this process.
+/// Returns false and sets \p Why if the folder is not this user's alone.
+static bool makePrivateFolder(const std::string &Folder, std::string &Why) {
+  struct stat Status;
+  if (mkdir(Folder.c_str(), 0700) && errno != EEXIST)
+    Why = Folder + ": " + errorText(errno);
+  else if (lstat(Folder.c_str(), &Status))
+    Why = Folder + ": " + errorText(errno);
+  else if (!S_ISDIR(Status.st_mode) || Status.st_uid != geteuid() ||
+           (Status.st_mode & 077))
+    Why = Folder + ": not a folder of this user alone; set TPC_FOLDER or HOME";
+  else
+    return true;
+  return false;
 }
 
 static bool makeFolder(const std::string &Folder) {
   for (size_t End = 1; End != std::string::npos;) {
     End = Folder.find('/', End + 1);
-    if (mkdir(Folder.substr(0, End).c_str(), 0777) && errno != EEXIST &&
+    if (mkdir(Folder.substr(0, End).c_str(), 0700) && errno != EEXIST &&
         errno != EISDIR)
       return false;
   }
@@ -65,7 +83,11 @@ static std::string nameOfProcess() {
 
 std::optional<NewFile> NewFile::create(const Config &C, std::string &Why) {
   std::string Folder = folderOf(C);
-  if (!makeFolder(Folder)) {
+  if (Folder.empty()) {
+    Folder = "/tmp/tpc-" + std::to_string(geteuid());
+    if (!makePrivateFolder(Folder, Why))
+      return std::nullopt;
+  } else if (!makeFolder(Folder)) {
     Why = Folder + ": " + errorText(errno);
     return std::nullopt;
   }
@@ -79,7 +101,7 @@ std::optional<NewFile> NewFile::create(const Config &C, std::string &Why) {
     // path. The process that creates the temporary file first gets it.
     std::string New = Path + ".new";
     int Descriptor =
-        open(New.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        open(New.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
     bool IsTaken = Descriptor < 0 && errno == EEXIST;
     if (Descriptor >= 0 && !access(Path.c_str(), F_OK)) {
       IsTaken = true;

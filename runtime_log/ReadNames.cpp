@@ -125,6 +125,25 @@ void log_read(char *key, const void *handle, const void *name,
   log_read_of(key, handle, name, text, nullptr, 0);
 }
 
+void log_read_in(char *key, const char *node, const void *name, bool text,
+                 const void *object, unsigned long size) noexcept {
+  try {
+    Thread *T = ThisThread ? ThisThread : makeThread();
+    ReportMark Mark(*T);
+    if (!Mark || !node || !*node)
+      return;
+    std::string Full = node;
+    Full += '/';
+    if (text)
+      Full += static_cast<const char *>(name);
+    else
+      Full += *static_cast<const std::string *>(name);
+    ReadNames::all().add(key, Full, object, size);
+  } catch (...) {
+    // A name that cannot be reported is not worth a node.
+  }
+}
+
 void log_read_of(char *key, const void *handle, const void *name, bool text,
                  const void *object, unsigned long size) noexcept {
   try {

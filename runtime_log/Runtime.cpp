@@ -5,7 +5,7 @@
 #include "Light.h"
 #include "Modes.h"
 #include "ReadNames.h"
-#include "ros1/RosControl.h"
+#include "Ros.h"
 
 #include <cstdio>
 #include <cstdlib>
@@ -77,7 +77,7 @@ public:
   }
 
   void start();
-  bool apply(const Config &C);
+  bool apply(const Config &Wanted);
   Config current();
   std::string status();
   void wake();
@@ -90,6 +90,8 @@ private:
   Runtime();
 
   static Sink &sinkOf(SinkKind K);
+  Config possible(const Config &C);
+  void tellOfFile();
   bool choose(const Config &C);
   bool isSummarised() const;
   void flush(bool IsEnd);
@@ -124,6 +126,7 @@ private:
   /// evaluated.
   int64_t Stretch = 1;
   bool HasToldOfCaps = false;
+  bool HasToldOfFile = false; ///< while Changing is locked
   std::atomic<uint64_t> DroppedInAll{0};
 };
 
@@ -171,14 +174,37 @@ void Runtime::start() {
     Held = configOfEnvironment();
   }
   HasSettings = true;
+  Held = possible(Held);
   if (!choose(Held)) {
     // The warning has been given; a ROS parameter may name another folder.
     Held.Sink = SinkKind::Off;
     choose(Held);
   }
+  tellOfFile();
   // Only now: if memory ran out, the next report tries again.
   IsStarted = true;
   startHelper();
+}
+
+/// \p C, but with the file in place of a topic of a ROS that cannot be used:
+/// reports are not lost, and there are no more of them.
+Config Runtime::possible(const Config &C) {
+  if (C.Sink == SinkKind::File || C.Sink == SinkKind::Off || whyNoRos().empty())
+    return C;
+  Config InFile = C;
+  InFile.Policy = C.filledIn().Policy;
+  InFile.Sink = SinkKind::File;
+  return InFile;
+}
+
+/// Says once that the file has what a topic was to get.
+void Runtime::tellOfFile() {
+  const std::string Why = whyNoRos();
+  LogFile *F = Held.Sink == SinkKind::File ? NowFile.load() : nullptr;
+  if (Why.empty() || !F || std::exchange(HasToldOfFile, true))
+    return;
+  warn("no reports are sent on a topic (" + Why + "); they are written to " +
+       F->path().substr(0, F->path().rfind('/')));
 }
 
 /// Makes log_one follow \p C; false if its file cannot be created.
@@ -222,9 +248,10 @@ bool Runtime::choose(const Config &C) {
   return true;
 }
 
-bool Runtime::apply(const Config &C) {
+bool Runtime::apply(const Config &Wanted) {
   start();
   std::lock_guard<std::mutex> Guard(Changing);
+  const Config C = possible(Wanted);
   if (C == Held)
     return true;
   // What the policy has kept so far goes to the old sink.
@@ -232,6 +259,7 @@ bool Runtime::apply(const Config &C) {
   if (!choose(C))
     return false;
   Held = C;
+  tellOfFile();
   wake();
   return true;
 }
@@ -326,11 +354,13 @@ void Runtime::help() {
 int64_t Runtime::runDue(int64_t Now) {
   // No lock is held, because roscpp calls back into apply().
   if (Now >= NextRos) {
-    int64_t After = forkedFromNode() ? -1 : pollRos();
+    int64_t After = pollRos();
     NextRos = After < 0 ? Never : Now + After;
   }
-  // roscpp knows it only some time after its start, and a program may change
-  // it.
+  // A ROS that was loaded, or started, only now may turn out not to work.
+  if (const Config Now = current(); !(possible(Now) == Now))
+    apply(Now);
+  // ROS knows it only some time after its start, and a program may change it.
   TimeIsSimulated = rosTimeIsSimulated();
   std::lock_guard<std::mutex> Guard(Changing);
   LogFile *File = Held.Sink == SinkKind::File ? NowFile.load() : nullptr;
@@ -441,7 +471,7 @@ void Runtime::end() {
     // A signal handler has interrupted a report of this thread to end the
     // process. The report may hold any lock. The file is complete without its
     // end.
-    rosEnd();
+    rosEnd(/*IsInterrupted=*/true);
     return;
   }
   if (HelperRuns) {
@@ -466,7 +496,7 @@ void Runtime::end() {
     ReadNames::all().give(S, Clock::steady());
   }
   S.end();
-  rosEnd();
+  rosEnd(/*IsInterrupted=*/false);
   if (LogFile *F = NowFile.load())
     F->close();
 }

@@ -47,7 +47,8 @@ Sink &rosoutSink();
 /// Sends batches on /threshold_information.
 Sink &topicSink();
 
-/// Sends batches on /rosout. Without ROS, reports go nowhere.
+/// Sends batches: on /rosout with ROS 1, on /threshold_information with ROS 2.
+/// Without ROS, reports go nowhere.
 Sink &autoSink();
 
 } // namespace tpc

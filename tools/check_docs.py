@@ -21,7 +21,6 @@ import re
 import shlex
 import subprocess
 import sys
-import tomllib
 from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
@@ -29,6 +28,7 @@ from pkgutil import resolve_name
 from typing import NamedTuple
 
 import click
+import tomllib
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
 

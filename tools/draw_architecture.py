@@ -13,11 +13,12 @@ import ast
 import re
 import sys
 import textwrap
-import tomllib
 from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 from typing import NamedTuple
+
+import tomllib
 
 PICTURE = Path("docs/images/architecture.svg")
 WIDTH, EDGE, GAP = 960, 24, 14

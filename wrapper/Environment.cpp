@@ -170,6 +170,9 @@ Environment Environment::read(const fs::path &Self) {
     E.Missing = "ld.lld-" + clangVersion() +
                 " is not installed (apt-get install lld-" + clangVersion() +
                 ")";
+  if (clangVersion() != TPC_CLANG_VERSION)
+    E.Missing = "TPC_CLANG_VERSION is " + clangVersion() +
+                ", and the plugins are for clang " TPC_CLANG_VERSION;
   for (const char *Part :
        {"lib/tpc/TpcDefer.so", "lib/tpc/TpcPasses.so", "lib/libtpc_log.so"})
     if (!isThere(E.Prefix / Part))

@@ -55,27 +55,66 @@ static std::pair<Instruction *, Value *> resultOf(CallBase &Call) {
           Store->getPointerOperand()->stripPointerCasts()};
 }
 
-static void expose(CallBase &Call, const Rule &Row) {
-  Value *Left = objectOf(Call, Row), *Right = argument(Call, Row, 0);
-  if (!Left || !Right || !Left->getType()->isPointerTy() ||
-      !Right->getType()->isPointerTy())
+/// The two operands of \p Call, described by \p Row: `this` and the first
+/// argument, or the first two arguments. Null where there is none.
+static std::pair<Value *, Value *> operandsOf(CallBase &Call, const Rule &Row) {
+  if (Row.Method)
+    return {objectOf(Call, Row), argument(Call, Row, 0)};
+  return {argument(Call, Row, 0), argument(Call, Row, 1)};
+}
+
+/// Writes what \p Call, an assignment, a copy or one of `+=`, `-=` and `*=`,
+/// does to its object \p To; \p Right is its operand.
+static void exposeAssignment(CallBase &Call, StringRef Relation, Value *To,
+                             Value *Right) {
+  bool IsObject = Right->getType()->isPointerTy();
+  if (IsObject == (Relation == "*=") ||
+      (!IsObject && !Right->getType()->isDoubleTy()))
     return;
-  CmpInst::Predicate P = predicateOf(Row.Relation);
-  bool IsSum = Row.Relation == "+", IsDifference = Row.Relation == "-";
-  auto [After, Result] =
-      IsSum || IsDifference ? resultOf(Call) : std::pair(&Call, &Call);
-  bool IsComparison =
-      P != CmpInst::BAD_FCMP_PREDICATE && Call.getType()->isIntegerTy(1);
-  if (!After || !(IsSum || IsDifference || IsComparison))
+  Instruction *After = insertionPointAfter(Call);
+  if (!After)
     return;
   IRBuilder<> B(&Call);
   B.SetCurrentDebugLocation(Call.getDebugLoc());
-  Value *L = take(B, Left), *R = take(B, Right);
+  Value *R = IsObject ? take(B, Right) : Right;
+  Value *Number = Relation == "+="   ? B.CreateFAdd(take(B, To), R)
+                  : Relation == "-=" ? B.CreateFSub(take(B, To), R)
+                  : Relation == "*=" ? B.CreateFMul(take(B, To), R)
+                                     : R;
+  B.SetInsertPoint(After);
+  B.SetCurrentDebugLocation(Call.getDebugLoc());
+  put(B, To, Number);
+}
+
+static void expose(CallBase &Call, const Rule &Row) {
+  auto [Left, Right] = operandsOf(Call, Row);
+  if (!Left || !Right || !Left->getType()->isPointerTy())
+    return;
+  StringRef Relation = Row.Relation;
+  if (is_contained({"copy", "+=", "-=", "*="}, Relation))
+    return exposeAssignment(Call, Relation, Left, Right);
+  bool IsScaled = Relation == "*" && Right->getType()->isDoubleTy();
+  if (!IsScaled && !Right->getType()->isPointerTy())
+    return;
+  CmpInst::Predicate P = predicateOf(Relation);
+  bool IsSum = Relation == "+", IsDifference = Relation == "-";
+  bool IsArithmetic = IsSum || IsDifference || IsScaled;
+  auto [After, Result] =
+      IsArithmetic ? resultOf(Call) : std::pair(&Call, &Call);
+  bool IsComparison =
+      P != CmpInst::BAD_FCMP_PREDICATE && Call.getType()->isIntegerTy(1);
+  if (!After || !(IsArithmetic || IsComparison))
+    return;
+  IRBuilder<> B(&Call);
+  B.SetCurrentDebugLocation(Call.getDebugLoc());
+  Value *L = take(B, Left), *R = IsScaled ? Right : take(B, Right);
   if (IsComparison) {
     Call.replaceAllUsesWith(B.CreateFCmp(P, L, R));
     return;
   }
-  Value *Number = IsSum ? B.CreateFAdd(L, R) : B.CreateFSub(L, R);
+  Value *Number = IsScaled ? B.CreateFMul(L, R)
+                  : IsSum  ? B.CreateFAdd(L, R)
+                           : B.CreateFSub(L, R);
   B.SetInsertPoint(After);
   B.SetCurrentDebugLocation(Call.getDebugLoc());
   put(B, Result, Number);
@@ -90,7 +129,15 @@ void exposeHeldNumbers(Module &M, const RuleMatches &Rules) {
     expose(*Call, *Row);
 }
 
-Value *heldSeconds(IRBuilder<> &B, Value *Object, const CallBase &Operator) {
+Value *heldSeconds(IRBuilder<> &B, Value *Object, const CallBase &Operator,
+                   const Rule &Row) {
+  if (Row.Nanoseconds) {
+    Value *Place =
+        B.CreateConstGEP1_32(B.getInt8Ty(), Object, *Row.Nanoseconds);
+    Value *Whole = B.CreateAlignedLoad(B.getInt64Ty(), Place, Align(8));
+    return B.CreateFMul(B.CreateSIToFP(Whole, B.getDoubleTy()),
+                        ConstantFP::get(B.getDoubleTy(), 1e-9));
+  }
   auto Part = [&](unsigned Index) {
     return B.CreateAlignedLoad(
         B.getInt32Ty(), B.CreateConstGEP1_32(B.getInt32Ty(), Object, Index),

@@ -15,16 +15,18 @@
 namespace tpc {
 
 class RuleMatches;
+struct Rule;
 
-/// Writes the comparisons, sums and differences of held numbers in \p M, a
-/// copy, as such. The outcome of a comparison is then that of an FCmpInst; the
-/// calls stay.
+/// Writes the comparisons, arithmetic and assignments of held numbers in \p M,
+/// a copy, as such. The outcome of a comparison is then that of an FCmpInst;
+/// the calls stay.
 void exposeHeldNumbers(llvm::Module &M, const RuleMatches &Rules);
 
 /// The seconds in the object at \p Object, which \p Operator compares: a time
-/// counts from 1970 without a sign, a duration has one.
+/// counts from 1970 without a sign, a duration has one. \p Row describes the
+/// operator.
 llvm::Value *heldSeconds(llvm::IRBuilder<> &B, llvm::Value *Object,
-                         const llvm::CallBase &Operator);
+                         const llvm::CallBase &Operator, const Rule &Row);
 
 } // namespace tpc
 

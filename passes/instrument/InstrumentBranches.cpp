@@ -138,6 +138,11 @@ std::optional<Report> planReport(const Comparison &C, bool IsUnsigned,
     return std::nullopt;
   // A call has its operands in the same order.
   R.Held = dyn_cast<CallBase>(There);
+  if (R.Held) {
+    R.HeldRow = Analysed.rowOf(*R.Held);
+    if (!R.HeldRow)
+      return std::nullopt;
+  }
   R.Threshold = There->getOperand(C.Threshold);
   R.Compared = There->getOperand(1 - C.Threshold);
   R.Outcome = There;
@@ -452,8 +457,8 @@ std::string insertReports(Module &M, ArrayRef<Report> Reports) {
       Above = R.Held->getPrevNode();
       Before = R.Held;
       IRBuilder<> B(R.Held);
-      Compared = heldSeconds(B, Compared, *R.Held);
-      Threshold = heldSeconds(B, Threshold, *R.Held);
+      Compared = heldSeconds(B, Compared, *R.Held, *R.HeldRow);
+      Threshold = heldSeconds(B, Threshold, *R.Held, *R.HeldRow);
       Collect();
     }
     Above = R.Before->getPrevNode();

@@ -30,7 +30,8 @@ struct Report {
   llvm::Value *Threshold;
   /// If those two are objects that hold a number: the call that compares them.
   llvm::CallBase *Held = nullptr;
-  llvm::Value *Outcome; ///< the outcome of the comparison
+  const Rule *HeldRow = nullptr; ///< describes Held
+  llvm::Value *Outcome;          ///< the outcome of the comparison
   /// The object whose evaluations are reported apart (Instances.h), if any.
   llvm::Value *Object = nullptr;
   bool Signed = true; ///< whether integers are signed

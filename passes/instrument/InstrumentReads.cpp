@@ -18,6 +18,21 @@ static constexpr StringLiteral LogName = "_Z8log_readPcPKvS1_b";
 /// The same with `const void *object, unsigned long size` at the end.
 static constexpr StringLiteral LogOfName = "_Z11log_read_ofPcPKvS1_bS1_m";
 
+/// `void log_read_in(char *key, const char *node, const void *name, bool text,
+/// const void *object, unsigned long size)`
+static constexpr StringLiteral LogInName = "_Z11log_read_inPcPKcPKvbS3_m";
+
+/// `_ZNK2ns4Node24get_fully_qualified_nameEv` for `ns::Node::method`; empty
+/// if \p Method is in no namespace.
+static std::string nodeNameOf(StringRef Method) {
+  SmallVector<StringRef, 4> Scopes;
+  Method.rsplit("::").first.split(Scopes, "::");
+  std::string Name = "_ZNK";
+  for (StringRef Scope : Scopes)
+    Name += std::to_string(Scope.size()) + Scope.str();
+  return Scopes.size() < 2 ? "" : Name + "24get_fully_qualified_nameEv";
+}
+
 /// The offset in bytes of the field \p Name in the class that \p Method is a
 /// method of; none if the debug information does not have it.
 static std::optional<uint64_t> offsetOf(const Function &Method,
@@ -59,6 +74,8 @@ std::optional<NamedRead> planName(const ParameterRead &Read,
     R.HandleOffset = *Offset;
     return R;
   }
+  if (Row.Resolve == "node")
+    R.NodeName = nodeNameOf(Row.Function);
   if (Row.Resolve == "global")
     R.Handle = nullptr;
   else if (!R.Handle)
@@ -118,6 +135,53 @@ static Function *reportFunction(Module &M, FunctionCallee Log,
   return F;
 }
 
+/// `void tpc.read.in.NODE(key, node, name, text, object, size)`, which asks the
+/// node for its name by its method \p NodeName and calls log_read_in, if there
+/// are both.
+static Function *nodeReportFunction(Module &M, StringRef NodeName) {
+  std::string Name = ("tpc.read.in." + NodeName).str();
+  if (Function *Known = M.getFunction(Name))
+    return Known;
+  LLVMContext &Ctx = M.getContext();
+  Type *Pointer = PointerType::getUnqual(Ctx);
+  auto *T = FunctionType::get(Type::getVoidTy(Ctx),
+                              {Pointer, Pointer, Pointer, Type::getInt1Ty(Ctx),
+                               Pointer, M.getDataLayout().getIntPtrType(Ctx)},
+                              false);
+  auto Weak = [&](StringRef Of, FunctionType *As) {
+    FunctionCallee Callee = M.getOrInsertFunction(Of, As);
+    if (auto *F = dyn_cast<Function>(Callee.getCallee());
+        F && F->isDeclaration() && F->use_empty())
+      F->setLinkage(GlobalValue::ExternalWeakLinkage);
+    return Callee;
+  };
+  FunctionCallee Log = Weak(LogInName, T);
+  if (auto *F = dyn_cast<Function>(Log.getCallee()); F && F->isDeclaration()) {
+    F->addParamAttr(3, Attribute::ZExt);
+    F->setDoesNotThrow();
+  }
+  FunctionCallee NameOf =
+      Weak(NodeName, FunctionType::get(Pointer, {Pointer}, false));
+  auto *F = Function::Create(T, GlobalValue::InternalLinkage, Name, M);
+  auto *Look = BasicBlock::Create(Ctx, "", F);
+  auto *Report = BasicBlock::Create(Ctx, "", F);
+  auto *Done = BasicBlock::Create(Ctx, "", F);
+  IRBuilder<> B(Look);
+  B.CreateCondBr(B.CreateOr(B.CreateIsNull(Log.getCallee()),
+                            B.CreateIsNull(NameOf.getCallee())),
+                 Done, Report);
+  B.SetInsertPoint(Report);
+  SmallVector<Value *, 6> Arguments;
+  for (Argument &A : F->args())
+    Arguments.push_back(&A);
+  Arguments[1] = B.CreateCall(NameOf, {Arguments[1]});
+  B.CreateCall(Log, Arguments)->addParamAttr(3, Attribute::ZExt);
+  B.CreateBr(Done);
+  B.SetInsertPoint(Done);
+  B.CreateRetVoid();
+  return F;
+}
+
 static Constant *textOf(Module &M, StringRef Text, const Twine &Name) {
   Constant *Data = ConstantDataArray::getString(M.getContext(), Text);
   auto *G = new GlobalVariable(M, Data->getType(), /*isConstant=*/true,
@@ -131,9 +195,12 @@ SmallVector<Instruction *, 0> insertNames(Module &M,
   SmallVector<Instruction *, 0> Inserted;
   if (Reads.empty())
     return Inserted;
-  Function *Report = reportFunction(M, logFunction(M, /*HasObject=*/false));
-  Function *ReportOf = nullptr;
-  if (any_of(Reads, [](const NamedRead &R) { return R.Object; }))
+  Function *Report = nullptr, *ReportOf = nullptr;
+  auto IsResolved = [](const NamedRead &R) { return R.NodeName.empty(); };
+  if (any_of(Reads, IsResolved))
+    Report = reportFunction(M, logFunction(M, /*HasObject=*/false));
+  if (any_of(Reads,
+             [&](const NamedRead &R) { return R.Object && IsResolved(R); }))
     ReportOf = reportFunction(M, logFunction(M, /*HasObject=*/true), Report);
   for (const NamedRead &R : Reads) {
     IRBuilder<> B(R.Before);
@@ -147,12 +214,18 @@ SmallVector<Instruction *, 0> insertNames(Module &M,
     Value *Name = R.Name ? R.Name : textOf(M, R.Text, "tpc.name");
     SmallVector<Value *, 6> Arguments{textOf(M, R.Key, "tpc.key"), Handle, Name,
                                       B.getInt1(!R.Name)};
-    if (R.Object)
+    Value *Object = R.Object;
+    if (!Object && !IsResolved(R))
+      Object = Constant::getNullValue(B.getPtrTy());
+    if (Object)
       Arguments.append(
-          {R.Object,
+          {Object,
            ConstantInt::get(M.getDataLayout().getIntPtrType(M.getContext()),
                             R.ObjectSize)});
-    Inserted.push_back(B.CreateCall(R.Object ? ReportOf : Report, Arguments));
+    Function *To = !IsResolved(R) ? nodeReportFunction(M, R.NodeName)
+                   : R.Object     ? ReportOf
+                                  : Report;
+    Inserted.push_back(B.CreateCall(To, Arguments));
   }
   return Inserted;
 }

@@ -11,6 +11,13 @@
 // has it, with the object and its size as well: two objects may read different
 // parameters there.
 //
+// For a node of rclcpp, which resolves no names, it calls
+//
+//   void log_read_in(char *key, const char *node, const void *name, bool text,
+//                    const void *object, unsigned long size)
+//
+// with what the node's get_fully_qualified_name() returns.
+//
 //===----------------------------------------------------------------------===//
 #ifndef TPC_INSTRUMENTREADS_H
 #define TPC_INSTRUMENTREADS_H
@@ -34,6 +41,9 @@ struct NamedRead {
   std::string Text;
   llvm::Value *Object = nullptr; ///< which the call is in a method of
   uint64_t ObjectSize = 0;       ///< in bytes
+  /// The mangled name of the method of Handle, a node of rclcpp, that returns
+  /// its name; empty for other handles.
+  std::string NodeName = {};
 };
 
 /// The report of the name of \p Read; none if roscpp does not resolve it, or if

@@ -4,6 +4,8 @@
 #include "Options.h"
 #include "Rules.h"
 #include "instrument/HeldNumbers.h"
+#include "instrument/VirtualRules.h"
+#include "params/ParameterObjects.h"
 #include "params/Texts.h"
 #include "support/Functions.h"
 #include "support/Names.h"
@@ -121,15 +123,27 @@ static void removeUnreachable(Module &M) {
     EliminateUnreachableBlocks(F);
 }
 
+/// Marks the calls in \p M that return the text or list of a parameter: what
+/// they lead to has no other name in the program.
+static void markOwnObjects(Module &M, const RuleMatches &Known) {
+  forEachCall(M, Known, Rule::Accessor, [&](CallBase &Call, const Rule &Row) {
+    if (Call.getType()->isPointerTy() &&
+        isObjectType(accessedType(*Call.getCalledFunction(), Row), Known))
+      Call.setMetadata(OwnObjectName, MDNode::get(M.getContext(), {}));
+  });
+}
+
 /// Makes \p M ready for the analysis.
 static void prepare(Module &M, const Options &Opts,
                     std::shared_ptr<const Rules> Tables) {
   takeAtomicsApart(M);
   removeUnreachable(M);
-  const RuleMatches Known(std::move(Tables), M);
+  const RuleMatches Known(Tables, M);
   exposeHeldNumbers(M, Known);
   SmallVector<WeakVH, 0> Marked = markSmallLibraryFunctions(M, Opts, Known);
   inlineMarked(M, Marked);
+  nameVirtualCalls(M, *Tables);
+  markOwnObjects(M, Known);
   // What follows the call of a function that always throws.
   removeUnreachable(M);
   for (const WeakVH &F : Marked)
@@ -394,6 +408,11 @@ Value *AnalysedModule::original(Value *V) const {
   if (isa<Constant>(V))
     return V;
   return Back.lookup(V);
+}
+
+const Rule *AnalysedModule::rowOf(const CallBase &Call) const {
+  const Function *F = Call.getCalledFunction();
+  return F ? Tables->match(*F).Row : nullptr;
 }
 
 std::vector<std::string> namedByCalls(Module &M, ModuleAnalysisManager &AM) {

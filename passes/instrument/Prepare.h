@@ -12,6 +12,7 @@
 #define TPC_PREPARE_H
 
 #include "llvm/ADT/DenseMap.h"
+#include "llvm/IR/InstrTypes.h"
 #include "llvm/IR/Instruction.h"
 #include "llvm/IR/Module.h"
 #include "llvm/IR/PassManager.h"
@@ -23,6 +24,7 @@ namespace tpc {
 
 struct Options;
 class Rules;
+struct Rule;
 
 /// Changes a program before reports are inserted, because a report inside a
 /// function stands for all of its calls. Functions whose comparisons count as
@@ -74,6 +76,9 @@ public:
   /// After bringBack(): the value of the original module for \p V; null if
   /// there is none (\p V was made by promotion).
   llvm::Value *original(llvm::Value *V) const;
+  /// The row of the rules that describes the function that \p Call, of the
+  /// original module, calls; null if there is none.
+  const Rule *rowOf(const llvm::CallBase &Call) const;
 
 private:
   /// True if the names added last had an effect.

@@ -135,6 +135,32 @@ static bool isDestructor(const CallBase &Call) {
          StringRef(qualifiedName(Callee->getName())).contains("::~");
 }
 
+/// Records the fields that \p Copy copies behind the first one: a compiler
+/// copies neighbouring fields of a class at once, by a pointer to the first.
+void AccessBuilder::fileFurtherFields(MemTransferInst &Copy) {
+  const auto *Bytes = dyn_cast<ConstantInt>(Copy.getLength());
+  if (!Bytes || Bytes->getValue().getActiveBits() > 32)
+    return;
+  uint64_t Size = Bytes->getZExtValue();
+  auto Fields = [&](const Value *Pointer) {
+    SmallVector<ScalarPart, 8> Parts;
+    for (Location &L : Pointers.resolve(Pointer, /*Scalar=*/false)) {
+      Type *T = L.isField() ? R.Types.typeAt(L) : nullptr;
+      if (!T || !T->isSized() ||
+          M.getDataLayout().getTypeAllocSize(T).getKnownMinValue() >= Size)
+        continue;
+      R.Types.enterScalar(L);
+      R.Types.addScalars(L, Size, Parts);
+    }
+    return Parts;
+  };
+  const SmallVector<ScalarPart, 8> From = Fields(Copy.getRawSource());
+  for (const ScalarPart &To : Fields(Copy.getRawDest()))
+    for (const ScalarPart &Of : From)
+      if (To.Low == Of.Low && To.Low != 0)
+        addCopy(Copy, {To.Where}, {Of.Where});
+}
+
 /// Records what \p Call can write.
 void AccessBuilder::fileCall(CallBase &Call) {
   // Calls that only query a text do not write it.
@@ -196,6 +222,7 @@ void AccessBuilder::fileAccesses() {
       } else if (auto *Copy = dyn_cast<MemTransferInst>(&I)) {
         addCopy(I, Pointers.covered(*Copy, Copy->getRawDest()),
                 Pointers.covered(*Copy, Copy->getRawSource()));
+        fileFurtherFields(*Copy);
       } else if (auto *Fill = dyn_cast<MemSetInst>(&I);
                  Fill && !isa<Constant>(Fill->getLength())) {
         // With a constant length it is how a compiler writes initial zeros.

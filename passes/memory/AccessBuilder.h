@@ -32,6 +32,7 @@ private:
   void addCopy(llvm::Instruction &I, Locations To, Locations From);
   void putInto(llvm::CallBase &Call);
   void fileReplacing(llvm::CallBase &Call, const llvm::Value *Pointer);
+  void fileFurtherFields(llvm::MemTransferInst &Copy);
   void fileCall(llvm::CallBase &Call);
   bool isConstArgument(const llvm::CallBase &Call, unsigned N);
 

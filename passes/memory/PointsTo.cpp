@@ -4,6 +4,7 @@
 #include "calls/SimpleCallGraph.h"
 #include "memory/PointsToSolver.h"
 #include "support/Functions.h"
+#include "support/Names.h"
 
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/Instructions.h"
@@ -23,9 +24,11 @@ const Value *containerOf(const CallBase &Call) {
   return N < Call.arg_size() ? Call.getArgOperand(N) : nullptr;
 }
 
-/// True for calls that allocate memory.
+/// True for calls that allocate memory, or return an object of their own.
 static bool isAllocation(const Value *V) {
   const auto *Call = dyn_cast<CallBase>(V);
+  if (Call && Call->hasMetadata(OwnObjectName))
+    return true;
   const Function *Callee = Call ? Call->getCalledFunction() : nullptr;
   static constexpr StringRef Names[] = {
       "_Znwm",  "_Znam", "_ZnwmSt11align_val_t", "_ZnamSt11align_val_t",

@@ -180,7 +180,7 @@ SmallVector<LoadInst *, 8> VisibleWrites::usesOf(const Instruction &Write,
 }
 
 SmallVector<LoadInst *, 8>
-VisibleWrites::elementsFrom(const Instruction &Write,
+VisibleWrites::elementsFrom(const Instruction *Write,
                             const Locations &Elements) {
   SmallSetVector<LoadInst *, 8> All;
   for (const Location &L : Elements) {
@@ -190,7 +190,7 @@ VisibleWrites::elementsFrom(const Instruction &Write,
   }
   All.remove_if([&](LoadInst *Load) {
     return Load->getType()->isPointerTy() ||
-           !is_contained(definitionsOf(*Load), &Write);
+           (Write && !is_contained(definitionsOf(*Load), Write));
   });
   return All.takeVector();
 }

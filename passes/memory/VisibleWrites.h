@@ -30,9 +30,10 @@ public:
                                                 const llvm::Value *Pointer);
 
   /// The loads that can read a number that \p Write, a call, puts into the list
-  /// with the elements \p Elements, or into a list that is one of them.
+  /// with the elements \p Elements, or into a list that is one of them. If
+  /// \p Write is null, whatever wrote it.
   llvm::SmallVector<llvm::LoadInst *, 8>
-  elementsFrom(const llvm::Instruction &Write, const Locations &Elements);
+  elementsFrom(const llvm::Instruction *Write, const Locations &Elements);
 
   /// The writes of the scalar at \p L that \p At, which reads it at \p Pointer,
   /// can see.

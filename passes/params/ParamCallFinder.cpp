@@ -92,7 +92,7 @@ ParamCallFinder::Result ParamCallFinder::run(Module &M,
     R.push_back({&Call, &Row, Known.nameOf(Call, Row), std::move(Type),
                  std::move(Default), argument(Call, Row, Row.Value)});
   });
-  findAccessors(M, AM, R);
+  findAccessors(M, AM, Known, R);
   findConfigs(M, AM, Known, R);
   const Options &Opts = AM.getResult<OptionsAnalysis>(M);
   for (ParameterRead &Read : R)

@@ -256,8 +256,13 @@ void Follower::followUse(const State &S, Use &U, unsigned Read) {
     if (const Rule *Row = Rules.match(*Call);
         Row && Row->Kind == Rule::Held && Row->Relation == "into" &&
         argument(*Call, *Row, Row->Value) == S.V) {
-      for (CallBase *Out : Texts.numbersFrom(*Call, *Row))
-        push({Out, S.How, nullptr, false}, Call);
+      for (CallBase *Out : Texts.numbersFrom(*Call, *Row)) {
+        Transform How = S.How;
+        How.divide(Row->PerSecond);
+        if (const Rule *Taking = Rules.match(*Out))
+          How.multiply(Taking->PerSecond);
+        push({Out, How, nullptr, false}, Call);
+      }
       return;
     }
   if (carry(S, U))
@@ -349,9 +354,11 @@ void Follower::followText(unsigned N) {
 /// that is compared, and what the program asks about the list itself.
 void Follower::followList(unsigned N) {
   const ParameterRead &Read = Reads[N];
-  const Value *List = madeBy(Read);
+  SmallVector<const Value *, 2> Lists(Read.Values.begin(), Read.Values.end());
+  if (const Value *Made = Lists.empty() ? madeBy(Read) : nullptr)
+    Lists.push_back(Made);
   Locations Elements;
-  if (List && Read.Values.empty())
+  for (const Value *List : Lists)
     Pointers.addElements(List, Elements);
   if (Elements.empty())
     return stopAt(ValueEnd::NoNumber, Read.Call);
@@ -360,7 +367,9 @@ void Follower::followList(unsigned N) {
   How.Part = "element";
   Seen.clear();
   SeenOrigins.clear();
-  for (LoadInst *Load : Writes.elementsFrom(*Read.Call, Elements))
+  // Nothing but the read fills an object that a method takes out of it.
+  const Instruction *Filled = Read.Values.empty() ? Read.Call : nullptr;
+  for (LoadInst *Load : Writes.elementsFrom(Filled, Elements))
     push({Load, How, nullptr, true}, Read.Call);
   for (const TextUsage::Property *P : Texts.propertiesOf(Elements)) {
     How.Part = P->Row->Relation;
@@ -372,7 +381,8 @@ void Follower::followList(unsigned N) {
   How.Part = "element";
   Seen.clear();
   // The list itself can be compared with a text.
-  append_range(Elements, Pointers.handed(List, /*IsOne=*/true));
+  for (const Value *List : Lists)
+    append_range(Elements, Pointers.handed(List, /*IsOne=*/true));
   addTexts(N, Elements, How);
   if (Usage.Comparisons.size() != Before)
     return;

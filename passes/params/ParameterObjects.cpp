@@ -8,8 +8,6 @@
 #include "support/Names.h"
 
 #include "llvm/ADT/MapVector.h"
-#include "llvm/ADT/SmallPtrSet.h"
-#include "llvm/ADT/StringSet.h"
 #include "llvm/IR/Module.h"
 
 #include <map>
@@ -17,113 +15,6 @@
 using namespace llvm;
 
 namespace tpc {
-
-//===----------------------------------------------------------------------===//
-// Objects with a method that returns the value
-//===----------------------------------------------------------------------===//
-
-/// An object that a read made: the pointers to it, and where it is stored.
-struct MadeObject {
-  unsigned Read;
-  SmallPtrSet<const Value *, 2> Pointers;
-  Locations Where;
-};
-
-/// The object that \p Read returns; null if it returns the value itself.
-static Value *objectOf(const ParameterRead &Read,
-                       const StringSet<> &ObjectClasses) {
-  if (Read.Target)
-    return ObjectClasses.contains(plainType(Read.Type)) ? Read.Target : nullptr;
-  if (!Read.Type.empty() && !ObjectClasses.contains(plainType(Read.Type)))
-    return nullptr;
-  if (Read.Call->hasStructRetAttr())
-    return Read.Call->getArgOperand(0);
-  return Read.Call->getType()->isPointerTy() ? Read.Call : nullptr;
-}
-
-/// \p Made and the objects that it is copied to: a call whose only arguments
-/// are it and another object is an assignment or a copy constructor.
-static MadeObject madeBy(unsigned Read, Value *Made, PointsTo &Pointers) {
-  MadeObject O{Read, {}, Pointers.resolve(Made, false)};
-  O.Pointers.insert(Made->stripPointerCasts());
-  for (const User *U : Made->users()) {
-    const auto *Assign = dyn_cast<CallBase>(U);
-    if (!Assign || Assign->arg_size() != 2 || Assign->getArgOperand(1) != Made)
-      continue;
-    const Value *To = Assign->getArgOperand(0);
-    if (!To->getType()->isPointerTy())
-      continue;
-    O.Pointers.insert(To->stripPointerCasts());
-    append_range(O.Where, Pointers.resolve(To, false));
-  }
-  return O;
-}
-
-SmallVector<Value *, 1> valuesOf(CallBase &Call) {
-  if (!Call.getType()->isPointerTy())
-    return {&Call};
-  SmallVector<Value *, 1> Loads;
-  for (User *U : Call.users())
-    if (auto *Load = dyn_cast<LoadInst>(U))
-      Loads.push_back(Load);
-  return Loads;
-}
-
-void findAccessors(Module &M, ModuleAnalysisManager &AM,
-                   std::vector<ParameterRead> &Reads) {
-  const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
-  PointsTo &Pointers = AM.getResult<PointsToAnalysis>(M);
-  struct Accessor {
-    CallBase *Call;
-    const Rule *Row;
-  };
-  SmallVector<Accessor, 0> Accessors;
-  StringSet<> Classes;
-  forEachCall(M, Rules, Rule::Accessor, [&](CallBase &Call, const Rule &Row) {
-    Accessors.push_back({&Call, &Row});
-    Classes.insert(StringRef(Row.Function).rsplit("::").first);
-  });
-  if (Accessors.empty())
-    return;
-  SmallVector<MadeObject, 0> Objects;
-  for (unsigned N = 0; N < Reads.size(); ++N)
-    if (Value *Made = objectOf(Reads[N], Classes)) {
-      Objects.push_back(madeBy(N, Made, Pointers));
-      Reads[N].Type = "";
-      Reads[N].Target = nullptr;
-    }
-  for (auto [Call, Row] : Accessors) {
-    const Value *Object = objectOf(*Call, *Row);
-    // An accessor can return an object that has accessors too.
-    while (const auto *Outer = dyn_cast_or_null<CallBase>(Object)) {
-      const Rule *OuterRow = Rules.match(*Outer);
-      if (!OuterRow || OuterRow->Kind != Rule::Accessor)
-        break;
-      Object = objectOf(*Outer, *OuterRow);
-    }
-    std::string Type = plainType(resultType(*Call->getCalledFunction()));
-    SmallVector<Value *, 1> Values = valuesOf(*Call);
-    if (!Object || Values.empty())
-      continue;
-    Object = Object->stripPointerCasts();
-    Locations Where = Pointers.resolve(Object, false);
-    bool Found = false;
-    for (const MadeObject &O : Objects) {
-      if (!O.Pointers.contains(Object) && none_of(Where, [&](const auto &L) {
-            return any_of(O.Where, [&](const auto &P) { return L.mayBe(P); });
-          }))
-        continue;
-      Found = true;
-      ParameterRead &Read = Reads[O.Read];
-      append_range(Read.Values, Values);
-      if (Read.Type.empty())
-        Read.Type = Type;
-    }
-    if (!Found)
-      Reads.push_back({Call, Row, DynamicName, Type, nullptr, nullptr,
-                       SmallVector<Value *, 1>(Values)});
-  }
-}
 
 //===----------------------------------------------------------------------===//
 // Classes whose fields are all parameters

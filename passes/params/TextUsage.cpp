@@ -38,9 +38,10 @@ TextUsage::TextUsage(Module &M, PointsTo &Pointers, AccessIndex &Accesses,
     Uses.push_back(std::move(U));
   });
   forEachCall(M, Rules, Rule::Held, [&](CallBase &Call, const Rule &Row) {
-    if (Row.Relation == "outof" && IsOwn(objectOf(Call, Row)))
-      Numbers.push_back(
-          {&Call, Pointers.handed(objectOf(Call, Row), /*IsOne=*/true)});
+    const Value *Holder =
+        Row.Relation == "outof" ? holderOf(Call, Row) : nullptr;
+    if (IsOwn(Holder))
+      Numbers.push_back({&Call, Pointers.handed(Holder, /*IsOne=*/true)});
   });
   forEachCall(M, Rules, Rule::Property, [&](CallBase &Call, const Rule &Row) {
     Property P{&Call, &Row, {}};
@@ -69,7 +70,10 @@ TextUsage::propertiesOf(const Locations &Elements) const {
 SmallVector<CallBase *, 2> TextUsage::numbersFrom(const CallBase &Into,
                                                   const Rule &Row) const {
   SmallVector<CallBase *, 2> Found;
-  Locations Objects = Pointers.handed(objectOf(Into, Row), /*IsOne=*/true);
+  const Value *Holder = holderOf(Into, Row);
+  if (!Holder || !Holder->getType()->isPointerTy())
+    return Found;
+  Locations Objects = Pointers.handed(Holder, /*IsOne=*/true);
   for (const auto &[Call, From] : Numbers)
     if (anyReaches(Objects, From))
       Found.push_back(Call);

@@ -85,9 +85,11 @@ std::string BlindSpot::text(const ParamCallFinder::Result &Reads,
     return "stored to one of very many variables";
   case Unread: {
     const auto *Store = dyn_cast<StoreInst>(At);
-    return Wording::with("stored", "into",
-                         Words.variable(Store ? Store->getPointerOperand()
-                                              : Reads[Read].Target)) +
+    const Value *Into = Store ? Store->getPointerOperand() : Reads[Read].Target;
+    // A list may be the result of a call.
+    if (!Into)
+      return "nothing here reads it";
+    return Wording::with("stored", "into", Words.variable(Into)) +
            ", and nothing here reads it";
   }
   case DynamicName:

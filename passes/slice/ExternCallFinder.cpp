@@ -3,11 +3,14 @@
 
 #include "memory/PointsTo.h"
 #include "memory/Variables.h"
+#include "params/Callbacks.h"
 #include "params/Texts.h"
 #include "slice/KeptObjects.h"
 #include "support/Names.h"
 #include "support/Print.h"
 
+#include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/ADT/StringSet.h"
 #include "llvm/IR/DebugInfoMetadata.h"
 #include "llvm/IR/Module.h"
 
@@ -69,9 +72,105 @@ static std::string topicOf(const Value *Object, ArrayRef<NamedObject> Named,
   return Topic;
 }
 
-/// Adds what \p F, which overrides a function of another library, gives back.
-static void addGivenBack(Function &F, ExternCallFinder::Result &Out) {
-  std::string Name = qualifiedName(linkageName(F));
+namespace {
+
+/// Follows a publisher or client back to the calls that made it: through
+/// variables, such as the pointer in a std::shared_ptr, arguments and results.
+class MakerSearch {
+public:
+  MakerSearch(const RuleMatches &Rules, const CallGraphResult &Calls,
+              VisibleWrites &Writes, Texts &Known)
+      : Rules(Rules), Calls(Calls), Writes(Writes), Known(Known) {}
+
+  /// The only topic of \p Object; empty if there is none or more than one.
+  std::string topicOf(const Value *Object);
+
+private:
+  void step(const Value *V);
+  void add(const CallBase &Call);
+  void push(const Value *V) {
+    if (Seen.insert(V).second)
+      Work.push_back(V);
+  }
+
+  const RuleMatches &Rules;
+  const CallGraphResult &Calls;
+  VisibleWrites &Writes;
+  Texts &Known;
+  SmallVector<const Value *, 16> Work;
+  SmallPtrSet<const Value *, 16> Seen;
+  StringSet<> Topics;
+};
+
+} // namespace
+
+/// A publisher that may come from more places is none of one topic.
+static constexpr unsigned MaxMakers = 256;
+
+/// Adds the topic of what \p Call makes, or goes on to what it returns.
+void MakerSearch::add(const CallBase &Call) {
+  if (const Rule *Row = Rules.match(Call); Row && Row->Kind == Rule::Topic) {
+    Topics.insert(Known.nameOf(Call, *Row));
+    return;
+  }
+  for (const Function *F : Calls.callees(Call))
+    for (const BasicBlock &BB : *F)
+      if (const auto *Return = dyn_cast<ReturnInst>(BB.getTerminator());
+          Return && Return->getReturnValue())
+        push(Return->getReturnValue());
+}
+
+void MakerSearch::step(const Value *V) {
+  if (const auto *Load = dyn_cast<LoadInst>(V)) {
+    for (const Instruction *Write : Writes.definitionsOf(*Load))
+      if (const auto *Store = dyn_cast<StoreInst>(Write))
+        push(Store->getValueOperand());
+      else if (const auto *Call = dyn_cast<CallBase>(Write);
+               Call && Call->hasStructRetAttr() &&
+               PointsTo::baseOf(Load->getPointerOperand()) ==
+                   PointsTo::baseOf(Call->getArgOperand(0)))
+        add(*Call);
+  } else if (const auto *Arg = dyn_cast<Argument>(V)) {
+    for (const CallBase *Call : Calls.callers(Arg->getParent()))
+      if (Arg->getArgNo() < Call->arg_size())
+        push(Call->getArgOperand(Arg->getArgNo()));
+  } else if (const auto *Call = dyn_cast<CallBase>(V)) {
+    add(*Call);
+  } else if (isa<PHINode, SelectInst, CastInst, FreezeInst>(V) ||
+             (isa<GEPOperator>(V) &&
+              cast<GEPOperator>(V)->hasAllZeroIndices())) {
+    for (const Value *From : cast<User>(V)->operands())
+      if (From->getType()->isPointerTy())
+        push(From);
+  }
+}
+
+std::string MakerSearch::topicOf(const Value *Object) {
+  Work.clear();
+  Seen.clear();
+  Topics.clear();
+  if (Object)
+    push(Object);
+  while (!Work.empty() && Seen.size() < MaxMakers && Topics.size() < 2)
+    step(Work.pop_back_val());
+  if (!Work.empty() || Topics.size() != 1)
+    return "";
+  std::string Topic = Topics.begin()->getKey().str();
+  return isDynamic(Topic) ? "" : Topic;
+}
+
+/// True if \p Loc is in a function whose messages are about its library.
+static bool isSilent(const DILocation *Loc, const RuleMatches &Rules) {
+  const DISubprogram *In = Loc ? Loc->getScope()->getSubprogram() : nullptr;
+  return In && Rules.isSilent(*In);
+}
+
+/// Adds what \p F, which overrides a function of another library, gives back,
+/// or one that \p CalledBy calls back.
+static void addGivenBack(Function &F, ExternCallFinder::Result &Out,
+                         StringRef CalledBy = "") {
+  std::string Name =
+      CalledBy.empty() ? qualifiedName(linkageName(F)) : CalledBy.str();
   auto Add = [&](ReturnInst &At, const Argument *Arg) {
     std::string What =
         Arg && !Arg->hasStructRetAttr() ? localName(*Arg, F) : "";
@@ -97,16 +196,17 @@ ExternCallFinder::Result ExternCallFinder::run(Module &M,
   Texts Known(Rules, AM.getResult<SimpleCallGraph>(M),
               Texts::MemoryView::of(M, AM));
   SmallVector<NamedObject, 0> Named = namedObjects(M, Rules, Pointers, Known);
+  MakerSearch Makers(Rules, AM.getResult<SimpleCallGraph>(M),
+                     AM.getResult<VisibleWritesAnalysis>(M), Known);
   Result R;
   forEachCall(M, Rules, Rule::Exposing, [&](CallBase &Call, const Rule &Row) {
-    const DILocation *Loc = Call.getDebugLoc();
-    if (const DISubprogram *In =
-            Loc ? Loc->getScope()->getSubprogram() : nullptr;
-        In && Rules.isSilent(*In))
+    if (isSilent(Call.getDebugLoc(), Rules))
       return;
     std::string Topic = Row.Name
                             ? Known.nameOf(Call, Row)
                             : topicOf(objectOf(Call, Row), Named, Pointers);
+    if (Topic.empty())
+      Topic = Makers.topicOf(objectOf(Call, Row));
     R.push_back({&Call, Row.Function, isDynamic(Topic) ? "" : std::move(Topic),
                  nullptr,
                  /*IsCall=*/true});
@@ -115,13 +215,24 @@ ExternCallFinder::Result ExternCallFinder::run(Module &M,
       overridingFunctions(M, AM.getResult<SimpleCallGraph>(M), Rules,
                           AM.getResult<OptionsAnalysis>(M));
   for (Function *F : Overriding.Functions)
-    addGivenBack(*F, R);
+    if (!Rules.isSilent(*F->getSubprogram()))
+      addGivenBack(*F, R);
+  UserSources Sources(AM.getResult<OptionsAnalysis>(M));
+  SmallSetVector<Function *, 8> Given = Overriding.Functions;
+  forEachCall(M, Rules, Rule::Callback, [&](CallBase &Call, const Rule &Row) {
+    for (unsigned N : Row.Callbacks)
+      if (const Value *Argument = Row.Name ? nullptr : argument(Call, Row, N))
+        for (Function *F : calledBackBy(Argument, Sources))
+          if (Given.insert(F))
+            addGivenBack(*F, R, Row.Function);
+  });
   SmallVector<InheritedWrite, 0> Writes = inheritedWrites(M, Overriding);
-  Writes.append(
-      keptObjectWrites(M, AM.getResult<SimpleCallGraph>(M), Rules,
-                       AM.getResult<DebugTypesAnalysis>(M), Overriding,
-                       UserSources(AM.getResult<OptionsAnalysis>(M))));
+  Writes.append(keptObjectWrites(M, AM.getResult<SimpleCallGraph>(M), Rules,
+                                 AM.getResult<DebugTypesAnalysis>(M),
+                                 Overriding, std::move(Sources)));
   for (InheritedWrite &W : Writes) {
+    if (isSilent(W.I->getDebugLoc(), Rules))
+      continue;
     std::string Name = qualifiedName(linkageName(*W.I->getFunction()));
     std::string Topic = (unscoped(Name) + " -> " + W.Class).str();
     R.push_back({W.I, std::move(Name), std::move(Topic)});

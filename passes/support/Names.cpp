@@ -167,6 +167,17 @@ std::string classArgument(const Function &F) {
       taken(Demangler.getFunctionDeclContextName(nullptr, nullptr)));
 }
 
+std::string functionArgument(const Function &F) {
+  ItaniumPartialDemangler Demangler;
+  std::string Name = F.getName().str();
+  if (Demangler.partialDemangle(Name.c_str()) || !Demangler.isFunction())
+    return "";
+  std::string Whole = taken(Demangler.getFunctionName(nullptr, nullptr));
+  std::string Scope =
+      taken(Demangler.getFunctionDeclContextName(nullptr, nullptr));
+  return templateArgument(StringRef(Whole).drop_front(Scope.size()));
+}
+
 std::string resultType(const Function &F) {
   ItaniumPartialDemangler Demangler;
   std::string Name = F.getName().str();
@@ -174,12 +185,8 @@ std::string resultType(const Function &F) {
   if (!Demangler.partialDemangle(Name.c_str()) && Demangler.isFunction()) {
     Text = taken(Demangler.getFunctionReturnType(nullptr, nullptr));
     // If the result type is deduced, the template argument tells it.
-    if (StringRef(Text).contains("auto")) {
-      std::string Whole = taken(Demangler.getFunctionName(nullptr, nullptr));
-      std::string Scope =
-          taken(Demangler.getFunctionDeclContextName(nullptr, nullptr));
-      Text = templateArgument(StringRef(Whole).drop_front(Scope.size()));
-    }
+    if (StringRef(Text).contains("auto"))
+      Text = functionArgument(F);
   }
   const Type *T = F.getReturnType();
   if (Text.empty())

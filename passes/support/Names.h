@@ -54,6 +54,10 @@ std::string plainType(llvm::StringRef Type);
 /// is none.
 std::string classArgument(const llvm::Function &F);
 
+/// The first template argument of the function template that \p F is made of;
+/// empty if it is not made of one.
+std::string functionArgument(const llvm::Function &F);
+
 /// The type of \p F's result: from its mangled name (only templates have it
 /// there), otherwise from the code; empty for an object.
 std::string resultType(const llvm::Function &F);
@@ -74,6 +78,10 @@ llvm::SmallBitVector constArguments(const llvm::Function &F);
 /// `void tpc::Held::put(double)`.
 inline constexpr llvm::StringLiteral TakeName = "_ZNK3tpc4Held4takeEv";
 inline constexpr llvm::StringLiteral PutName = "_ZN3tpc4Held3putEd";
+
+/// Metadata of a call in the analysed copy: the result points to an object that
+/// nothing else leads to.
+inline constexpr llvm::StringLiteral OwnObjectName = "tpc.object";
 
 /// `this` of \p F; null if it has none, as in a static method, or if nothing is
 /// known about it.

@@ -20,6 +20,7 @@ from pytpc.build.python_units import (
 )
 from pytpc.python_analysis.budget import SECONDS
 from pytpc.python_analysis.rules_file import Rules
+from pytpc.static.sources import with_source_digests
 from pytpc.static.static_info import StaticInfo
 from pytpc.workspace.colcon import BuildOptions
 
@@ -54,7 +55,9 @@ def analyse(
         others = len(analysed.left_out) - 1
         also = f" (and {many(others, 'other script')} that cannot be analysed)" if others else ""
         raise InputError(f"{analysed.left_out[0].reason}{also}")
-    return StaticInfo.of(named_beside(analysed.units, ()), left_out=analysed.left_out)
+    found = StaticInfo.of(named_beside(analysed.units, ()), left_out=analysed.left_out)
+    # By these, a later recording is known to be of the same code, as after a build.
+    return with_source_digests(found)
 
 
 def collect(

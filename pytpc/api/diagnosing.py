@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
-from typing import TypedDict, Unpack
+from typing import TYPE_CHECKING, TypedDict
 
+from pytpc.api.comparing import RecordedRun, Run, beside
 from pytpc.api.missions import (
     Source,
     about_mission,
@@ -17,30 +19,37 @@ from pytpc.api.missions import (
     read_marked,
     with_names_of,
 )
+from pytpc.base.closest import did_you_mean
 from pytpc.base.errors import InputError
-from pytpc.base.wording import plain
+from pytpc.base.wording import listed, plain
+from pytpc.diagnosis.diagnose import diagnose_mission
 from pytpc.diagnosis.question import PLAIN, Question, Types
-from pytpc.diagnosis.ranking.blame import blame
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.diagnosis.results.advice import RankCurves
+from pytpc.diagnosis.results.diagnosis import Diagnosis
 from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.diagnosis.scores.score_tables import STEP_S, Tpcs, rank_curves
-from pytpc.diagnosis.suggestion.advise import advise_blamed
 from pytpc.present.answers import Diagnosed, NotebookTable, TableSequence
 from pytpc.recording.declaration import Declared
 from pytpc.recording.mission import Recording
 from pytpc.recording.parameter_change import Change
-from pytpc.ros.mission_run import PARAMS_FILE
-from pytpc.static.parameters import parameter_name, same_parameter
+from pytpc.static.parameters import ByParameter, meant_by, parameter_name, same_parameter
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.changes import changes_between
+from pytpc.values.origins import PARAMS_FILE
+from pytpc.values.recording import params_file
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+_LISTED = 5
 
 
 class DiagnoseSettings(TypedDict, total=False):
     """The settings of ``diagnose`` as keywords."""
 
     types: Types
-    reference: Recording | Source | None
+    reference: Run | Sequence[Run] | None
     changes: Sequence[Change]
     top: int
 
@@ -59,7 +68,8 @@ def diagnose(
         question: all settings at once. Without it, declared ranges of parameters are read from the
             sources of the static information, and from the folder of a mission given by its path.
         **settings: in place of ``question``. ``types``: with ``ignore`` the types of the marks do
-            not count. ``reference``: a good run of the same build. ``changes``: what was changed
+            not count. ``reference``: a good run of the same build, or several with the last one
+            last; the folder of a run also tells its parameters. ``changes``: what was changed
             since the last good run, see `pytpc.values.changes.read_changes` and
             `pytpc.values.changes.changes_between`. ``top``: how many suspects get a value to try.
 
@@ -67,17 +77,14 @@ def diagnose(
         InputError: the mission has no marks, or something cannot be read.
         TypeError: both ``question`` and other settings are given, or there is no such setting.
     """
+    reference = settings.pop("reference", None)
     asked = question_of(question, settings, DiagnoseSettings.__annotations__)
-    recording = read_marked(mission)
+    if question is not None and reference is not None:
+        raise TypeError("give a question or single settings, not both")
     source = None if isinstance(mission, Recording) else Path(mission)
-    given = load_static(static_info)
-    static = with_names_of(recording, given, source)
-    if question is None:
-        good = None if asked.reference is None else read(asked.reference)
-        asked = replace(asked, reference=good, declared=find_declared(static, source))
-    asked = about_mission(asked, given, static)
-    found = blame(recording, static, asked)
-    return Diagnosed(found, tuple(advise_blamed(found, recording, static, asked)))
+    run = RecordedRun(read_marked(mission), source)
+    good = () if reference is None else reference
+    return Diagnosed.of(AskedMission.of(run, load_static(static_info), asked, good).diagnosis)
 
 
 def changes_since(before: Path, mission: Path) -> tuple[Change, ...]:
@@ -86,17 +93,16 @@ def changes_since(before: Path, mission: Path) -> tuple[Change, ...]:
     Raises:
         InputError: one of them does not exist or cannot be read.
     """
-    folder = mission if mission.is_dir() else mission.parent
-    after = folder / PARAMS_FILE
-    if not after.is_file():
+    after = params_file(mission)
+    if after is None:
         raise InputError(f"has no {PARAMS_FILE} beside it to compare with --before", mission)
     return changes_between(before, after)
 
 
 def is_compared(changes: Sequence[Change], static_info: StaticInfo) -> bool:
     """Whether one of the changed parameters is compared anywhere; otherwise changes say nothing."""
-    names = Tpcs.of(static_info).names
-    return any(same_parameter(one.parameter, name) for one in changes for name in names)
+    names = ByParameter(Tpcs.of(static_info).names, str)
+    return any(names.meant(one.parameter) for one in changes)
 
 
 class RankSettings(TypedDict, total=False):
@@ -147,10 +153,27 @@ class Rankings(TableSequence[MarkRanking]):
         Raises:
             InputError: no comparison with it is known.
         """
-        names = {parameter_name(found) for found in self.static_info.thresholds.values()}
-        if not any(parameter == name or same_parameter(parameter, name) for name in names):
-            raise InputError(f"no comparison with a parameter {plain(parameter)} is known")
-        return replace(self, rankings=tuple(one.only(parameter) for one in self.rankings))
+        name = self.named(parameter)
+        return replace(self, rankings=tuple(one.only(name) for one in self.rankings))
+
+    def named(self, parameter: str) -> str:
+        """The parameter that a person means by its name, or by the end of its name in the source.
+
+        Raises:
+            InputError: no comparison with it is known, or several parameters end so.
+        """
+        names = sorted({parameter_name(found) for found in self.static_info.thresholds.values()})
+        meant = meant_by(parameter, names)
+        if not meant:
+            hint = did_you_mean(parameter, names)
+            raise InputError(f"no comparison with a parameter {plain(parameter)} is known{hint}")
+        if len(meant) == 1:
+            return meant[0]
+        # The diagnosis takes this name for all of them.
+        if any(same_parameter(parameter, name) for name in meant):
+            return parameter
+        which = plain(listed(meant, _LISTED))
+        raise InputError(f"several end with {plain(parameter)}; give one of: {which}")
 
     @property
     def items(self) -> tuple[MarkRanking, ...]:
@@ -202,6 +225,54 @@ class Rankings(TableSequence[MarkRanking]):
             ]
         headings = ("mark", "at", "type", "#", "parameter", "rank", "score", "compared at")
         return NotebookTable(headings, tuple(rows), frozenset({0, 1, 3, 5, 6}))
+
+
+@dataclass(frozen=True)
+class AskedMission:
+    """A mission that was read, and a question about it; each answer is worked out once.
+
+    ``static_info`` has the names of this mission, and ``question`` what differs from the good runs.
+    """
+
+    run: RecordedRun
+    static_info: StaticInfo
+    question: Question
+
+    @classmethod
+    def of(
+        cls,
+        run: RecordedRun,
+        static_info: StaticInfo,
+        question: Question,
+        good: Run | Sequence[Run] = (),
+    ) -> AskedMission:
+        """Put a question.
+
+        Args:
+            run: the mission.
+            static_info: of its build.
+            question: its ``declared`` is looked for if it is None.
+            good: good runs, the last one last; may be empty.
+
+        Raises:
+            InputError: the values of a run cannot be read.
+        """
+        named = with_names_of(run.recording, static_info, run.source)
+        if question.declared is None:
+            question = replace(question, declared=find_declared(named, run.source))
+        return cls(run, named, beside(question, good, run, static_info, named))
+
+    @cached_property
+    def diagnosis(self) -> Diagnosis:
+        """What all marks say together; without a mark, nobody is suspected."""
+        return diagnose_mission(self.run.recording, self.static_info, self.question)
+
+    @cached_property
+    def rankings(self) -> Rankings:
+        """The suspects at each mark."""
+        recording, named = self.run.recording, self.static_info
+        found = rank_marks(recording, named, self.question)
+        return Rankings(tuple(found), recording, named, self.run.source, self.question)
 
 
 def rank(

@@ -5,8 +5,6 @@
 
 from __future__ import annotations
 
-import os
-import secrets
 import threading
 import time
 from collections import deque
@@ -16,8 +14,10 @@ from dataclasses import replace
 import numpy as np
 from rich.text import Text
 
+from pytpc.api.live_diagnosis import LiveDiagnosis
 from pytpc.api.live_reports import Item, Reports
 from pytpc.base.errors import RunError
+from pytpc.base.wording import plain
 from pytpc.diagnosis.question import Question, Types
 from pytpc.diagnosis.ranking.watching import KINDS, KeptRankings, Watching
 from pytpc.diagnosis.results.live import Look, Seen
@@ -27,9 +27,9 @@ from pytpc.present.watch_screen import LAYOUTS, Panel, Status, WatchOptions, wat
 from pytpc.recording.marking_session import MarkChange, Session, View
 from pytpc.recording.mission import ReadName, Recording
 from pytpc.recording.summaries import Summary
-from pytpc.ros.ros1.master import Master, own_host
-from pytpc.ros.ros1.relay import ROSOUT, TOPIC
-from pytpc.ros.ros1.subscriber import RawSubscriber
+from pytpc.ros.live_source import reports_at
+from pytpc.ros.ros2.address import Ros2Address, is_ros2
+from pytpc.ros.ros2.found_nodes import nobody
 from pytpc.static.static_info import StaticInfo
 
 __all__ = ["KINDS", "Feed", "GraphFeed", "RecordedFeed", "WatchedMission", "Watching"]
@@ -61,7 +61,7 @@ class GraphFeed:
     """The reports of the graph of a master, which may come late, go and come again.
 
     Args:
-        master: URI of the ROS master.
+        master: URI of the ROS master, or the address of the ROS 2 graph.
         fresh: a ranking without reports; where the clock is set back, a copy of it starts again.
     """
 
@@ -69,13 +69,16 @@ class GraphFeed:
 
     def __init__(self, master: str, fresh: Watching) -> None:
         """Listen in a thread of its own."""
-        self._master = master
         self._fresh = fresh
         self._watching = fresh.snapshot()
-        self._reports = Reports()
+        self._source = reports_at(master)
+        self._reports = Reports(self._source.decoders)
         self._items: deque[Item] = deque(maxlen=_MOST_WAITING)
         self._other_clock = 0
         self._connected = False
+        self._gone = f"the ROS master at {master} does not answer"
+        if is_ros2(master):
+            self._gone = nobody(Ros2Address.parse(master))
         self._restarted = ""
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._listen, daemon=True)
@@ -108,11 +111,12 @@ class GraphFeed:
 
     def fault(self) -> str:
         """What is wrong with the connection, and what was broken."""
-        gone = f"the ROS master at {self._master} does not answer"
-        words = [] if self._connected else [gone]
+        words = [] if self._connected else [self._gone]
         words += [self._restarted] if self._restarted else []
         if self._reports.malformed:
             words.append(f"{self._reports.malformed:,} broken")
+        if cut := sum(self._source.broken.values()):
+            words.append(f"{cut:,} broken off")
         if self._other_clock:
             words.append(f"{self._other_clock:,} left out (another clock)")
         return ", ".join(words)
@@ -124,31 +128,24 @@ class GraphFeed:
     def close(self) -> None:
         """Leave the graph."""
         self._ended.set()
-        self._thread.join(3.0)
+        self._thread.join()
 
     def _listen(self) -> None:
-        master = Master(self._master, f"/tpc_watch_{os.getpid()}_{secrets.token_hex(3)}")
-        subscriber = RawSubscriber(master, own_host(os.environ, self._master), [])
-        looks = threading.Thread(target=self._keep_registered, args=(subscriber,), daemon=True)
-        looks.start()
+        threading.Thread(target=self._keep_looking, daemon=True).start()
         try:
             while not self._ended.is_set():
-                for source, data in subscriber.poll(_POLL_S):
+                for source, data in self._source.poll(_POLL_S):
                     self._items += self._reports.read(source, data, time.monotonic())
                 self._items += self._reports.due(time.monotonic())
         finally:
             self._ended.set()
-            looks.join(1.0)
-            subscriber.close()
+            self._source.close()
 
-    def _keep_registered(self, subscriber: RawSubscriber) -> None:
-        """Subscribe again when the master was restarted, which forgets all subscribers."""
+    def _keep_looking(self) -> None:
+        """Find new publishers, also at a master that was restarted."""
         while True:
             try:
-                subscribers = subscriber.master.state().subscribers
-                for topic in (ROSOUT, TOPIC):
-                    if subscriber.master.caller not in subscribers.get(topic, ()):
-                        subscriber.subscribe(topic)
+                self._source.look()
                 self._connected = True
             except RunError:
                 self._connected = False
@@ -224,12 +221,24 @@ class WatchedMission:
         feed: where its evaluations come from.
         options: what is to be shown.
         believe: whether a mark's type chooses the ranking that is kept at it.
+        judged: the diagnosis by all marks so far, beside good runs; None without any.
+
+    Attributes:
+        about: further lines to show above the tables; more may be added meanwhile.
     """
 
     def __init__(
-        self, mission: MarkedMission, feed: Feed, options: WatchOptions, *, believe: bool = True
+        self,
+        mission: MarkedMission,
+        feed: Feed,
+        options: WatchOptions,
+        *,
+        believe: bool = True,
+        judged: LiveDiagnosis | None = None,
     ) -> None:
         """Nothing is shown yet."""
+        self.about: Sequence[str] = ()
+        self._judged = judged
         self._mission = mission
         self._feed = feed
         self._options = options
@@ -259,12 +268,16 @@ class WatchedMission:
         return self._mission.press(key)
 
     def view(self) -> View:
-        """The mission's own view."""
-        return self._mission.view()
+        """The mission's own view, with what differs, the verdict so far, and the further lines."""
+        view = self._mission.view()
+        judged = () if self._judged is None else self._judged.lines
+        return view._replace(status=(*view.status, *map(plain, judged), *self.about))
 
     def send(self, change: MarkChange) -> str:
         """Keep the ranking of this instant, tell the mission, and say who is suspected."""
         self.take()
+        if self._judged is not None:
+            self._judged.mark(change.apply)
         self.kept.follow(change, self.watching, believe=self._believe)
         self._options = self._options._replace(back=None)
         self._mission.send(change)
@@ -278,7 +291,13 @@ class WatchedMission:
 
     def take(self) -> None:
         """Take in what has arrived up to now."""
+        before = self.watching
         self.watching, items = self._feed.take(self.now_ns())
+        if self._judged is not None:
+            if self.watching is not before:
+                self._judged.restart()
+            self._judged.take(items)
+            self.watching.differing = self._judged.differing
         for item in items:
             if isinstance(item, Seen):
                 self.watching.take(item)
@@ -289,19 +308,25 @@ class WatchedMission:
 
     def close(self) -> None:
         """Leave the graph."""
+        if self._judged is not None:
+            self._judged.close()
         self._feed.close()
         self._mission.close()
 
+    def unheard(self) -> int:
+        """How many messages about marks nobody got."""
+        return self._mission.unheard()
+
     def status(self) -> Status:
         """The counts and faults so far."""
-        steady_s, reports = time.monotonic(), self.watching.reports
-        self._rates.append((steady_s, reports))
+        steady_s, evaluations = time.monotonic(), self.watching.evaluations
+        self._rates.append((steady_s, evaluations))
         while self._rates[0][0] < steady_s - _RATE_S:
             self._rates.popleft()
         since, before = self._rates[0]
-        rate = max(0, reports - before) / (steady_s - since) if steady_s > since else 0.0
+        rate = max(0, evaluations - before) / (steady_s - since) if steady_s > since else 0.0
         return Status(
-            reports=reports,
+            evaluations=evaluations,
             rate=rate if self._feed.live else None,
             nodes=len(self.watching.nodes),
             unknown=len(self.watching.unknown),
@@ -318,7 +343,15 @@ class WatchedMission:
     def _look_at(self, now_ns: int) -> Look:
         """The look of now; worked out again only if anything is new and some time has passed."""
         options = self._options
-        of = (now_ns, self.watching, self.watching.reports, options.top, options.layout)
+        watching = self.watching
+        of = (
+            now_ns,
+            watching,
+            watching.evaluations,
+            watching.differing,
+            options.top,
+            options.layout,
+        )
         steady_s = time.monotonic()
         if self._look is not None:
             since, look, before = self._look

@@ -10,8 +10,8 @@ from collections import Counter, deque
 from typing import NamedTuple
 
 from pytpc.diagnosis.results.live import Seen
+from pytpc.ingest.decoders import ROS1, Decoders
 from pytpc.ingest.losses import LossCounter
-from pytpc.ingest.ros1 import decode_log, decode_string
 from pytpc.ingest.rosout_line import (
     BATCH_PREFIX,
     Drop,
@@ -31,8 +31,9 @@ from pytpc.ingest.short_summary import (
 )
 from pytpc.recording.mission import ReadName
 from pytpc.recording.summaries import Summary
+from pytpc.ros.intake import sender_of
 from pytpc.ros.ros1.relay import ROSOUT, lines_of
-from pytpc.ros.ros1.subscriber import Source
+from pytpc.ros.source import Source
 
 Item = Seen | Summary | ReadName
 
@@ -56,7 +57,9 @@ class Reports:
     moment, and is dropped if /rosout brings the same line.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, decoders: Decoders = ROS1) -> None:
+        """Nothing has come yet; ``decoders`` are those of the graph's ROS."""
+        self._decoders = decoders
         self._counter: LossCounter[str] = LossCounter()
         self._logged: Counter[str] = Counter()
         self._order: deque[tuple[float, str]] = deque()
@@ -95,7 +98,7 @@ class Reports:
         return found
 
     def _log(self, source: Source, data: bytes, steady_s: float) -> list[Item]:
-        log = decode_log(data)
+        log = self._decoders.log(data)
         node = log.node.decode("utf-8", "replace")
         self._counter.see(source.node or node, log.seq, latched=source.latched)
         if not log.msg.startswith(_BEGIN):
@@ -119,11 +122,11 @@ class Reports:
         return [] if item is None else [item]
 
     def _text(self, source: Source, data: bytes, steady_s: float) -> list[Item]:
-        raw = decode_string(data)
+        raw = self._decoders.text(data)
         self._counter.see_text(source.node, raw)
         text = raw.decode("utf-8", "replace")
         if text.startswith("#"):
-            return self._batch(text, source.node)
+            return self._batch(text, source.node or sender_of(raw))
         item = self._line(text, source.node)
         if item is not None:
             self._held.append(_Held(steady_s + _HOLD_S, text.rstrip(), item))

@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.full_names import with_full_names, with_keys_of
 from pytpc.diagnosis.question import Question
@@ -15,7 +17,9 @@ from pytpc.ingest.duplicates import TOLERANCE_NS
 from pytpc.ingest.reading import opened
 from pytpc.ingest.reading import read as read_recording
 from pytpc.recording.declaration import Declared
+from pytpc.recording.marks import read_marks
 from pytpc.recording.mission import Recording
+from pytpc.recording.summaries import Summaries
 from pytpc.static.parameters import base_key
 from pytpc.static.static_info import StaticInfo, read_static
 from pytpc.values.declared import declared_in
@@ -50,13 +54,22 @@ def read(source: Recording | Source) -> Recording:
     return source if isinstance(source, Recording) else read_recording(Path(source))
 
 
-def read_named(source: Path, on_progress: Progress | None = None) -> Recording:
+def read_named(
+    source: Path, on_progress: Progress | None = None, marks: Sequence[Path] = ()
+) -> Recording:
     """A recorded mission, named after its folder, because the bags of all missions are named alike.
 
+    Args:
+        source: a file or folder.
+        on_progress: called with (done, total).
+        marks: more files with marks of it.
+
     Raises:
-        InputError: it cannot be read.
+        InputError: it cannot be read, or one of ``marks`` is no file of marks.
     """
-    found = read_recording(source, on_progress)
+    for file in marks:
+        read_marks(file)
+    found = read_recording([source, *marks], on_progress)
     return replace(found, name=source.absolute().name) if source.is_dir() else found
 
 
@@ -97,9 +110,8 @@ def about_mission(question: Question, static_info: StaticInfo, named: StaticInfo
         static_info: of the build.
         named: the same with the names of this mission, from ``with_names_of``.
     """
-    if question.reference is None:
-        return question
-    return replace(question, reference=with_keys_of(question.reference, static_info, named))
+    good = [with_keys_of(one, static_info, named) for one in question.references]
+    return replace(question, references=good)
 
 
 def check_reports(recording: Recording, static_info: StaticInfo, source: Path) -> None:
@@ -110,18 +122,53 @@ def check_reports(recording: Recording, static_info: StaticInfo, source: Path) -
     Raises:
         InputError: it knows none.
     """
-    reported = {*recording.events.keys, *recording.summaries.keys}
-    if not reported:
-        raise InputError(
-            "no threshold reports: was /rosout recorded, and the workspace built with TPC?"
-            " Files of the sink `file` belong in the same folder, or in its folder tpc",
-            source,
-        )
+    check_has_reports(recording, source)
+    reported = reported_keys(recording)
     reported |= {base_key(key) for key in reported}
     if reported.isdisjoint(static_info.comparisons):
         raise InputError(
-            "the static information knows none of its reports: it is of another build; give the"
-            " static.json of the build that was recorded",
+            "the static information knows none of its reports: it is of another build; give the one"
+            " that was recorded, with --static WORKSPACE or --static FILE",
+            source,
+        )
+
+
+def reported_keys(recording: Recording) -> set[str]:
+    """The keys of all comparisons that were reported."""
+    return {*recording.events.keys, *recording.summaries.keys}
+
+
+def same_reports(one: Recording, other: Recording) -> bool:
+    """Whether two recordings are of one mission: they have the same reports at the same times."""
+    ours, theirs = one.events, other.events
+    return (
+        (len(ours), len(one.summaries)) == (len(theirs), len(other.summaries))
+        and set(ours.keys) == set(theirs.keys)
+        and np.array_equal(ours.time_ns, theirs.time_ns)
+        and np.array_equal(ours.cmp, theirs.cmp, equal_nan=True)
+        and np.array_equal(ours.thresh, theirs.thresh, equal_nan=True)
+        and _same_columns(one.summaries, other.summaries)
+    )
+
+
+def _same_columns(one: Summaries, other: Summaries) -> bool:
+    theirs = other.columns()
+    return all(
+        np.array_equal(ours, theirs[name], equal_nan=ours.dtype == np.float64)
+        for name, ours in one.columns().items()
+    )
+
+
+def check_has_reports(recording: Recording, source: Path) -> None:
+    """Check that a recording has a report.
+
+    Raises:
+        InputError: it has none.
+    """
+    if not reported_keys(recording):
+        raise InputError(
+            "no threshold reports: was /rosout recorded, and the workspace built with TPC?"
+            " Files of the sink `file` belong in the same folder, or in its folder tpc",
             source,
         )
 

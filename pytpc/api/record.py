@@ -3,47 +3,235 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+import shlex
+import threading
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
-from pytpc.build.build import installed, workspace_env
+from pytpc.base.errors import InputError, RunError, TpcError
+from pytpc.base.paths import MERGED_FILE
+from pytpc.base.signals import Stop
+from pytpc.base.wording import listed
+from pytpc.build.nodes_env import DEVEL, nodes_env
+from pytpc.ingest.file_counts import FileCounter
 from pytpc.python_runtime.config import NAMES
+from pytpc.ros.caller_env import with_callers
 from pytpc.ros.mission_run import DEFAULT_TOPICS, MissionRun, Progress, RecordOptions
-from pytpc.ros.node_start import mission_env
-from pytpc.ros.ros1.record_mission import record_graph as record_running
-from pytpc.ros.ros1.record_mission import run_mission
+from pytpc.ros.node_start import STATIC, mission_env
+from pytpc.ros.ros1.launch_files import find_launch
+from pytpc.ros.ros1.record_mission import record_graph, run_mission
+from pytpc.ros.ros2.graph_recording import record_ros2_graph
+from pytpc.ros.running import RunningRecording, announced, process_start
+from pytpc.ros.which import asked_ros
+from pytpc.values.origins import ORIGINS_FILE, read_document
 from pytpc.workspace.colcon import Bases
+from pytpc.workspace.packages import package_folders, read_manifest
 
+_LISTED = 4
+_LAUNCH_OF_ROS2 = (".py", ".launch.xml", ".yaml", ".yml")
 __all__ = ["DEFAULT_TOPICS", "MissionRun", "Progress", "RecordOptions"]
-__all__ += ["record_launch", "record_running", "sink_settings"]
+__all__ += ["NodeFiles", "node_files", "record_launch", "record_ros2", "record_running"]
+__all__ += ["sink_settings"]
+__all__ += ["package_of_launch", "why_no_origins"]
 
 
 def record_launch(
-    workspace: Path, options: RecordOptions, *, python: bool = True, use_sim_time: bool = True
+    workspace: Path,
+    options: RecordOptions,
+    *,
+    python: bool = True,
+    use_sim_time: bool | None = True,
+    stop: Stop | None = None,
 ) -> MissionRun:
     """Run a launch file of a built workspace on a ROS graph of its own, and record it.
 
     The settings of sinks in the caller's environment (TPC_SINK, TPC_POLICY, ...) hold for all
-    nodes.
+    nodes. Packages of other workspaces that the caller has sourced are found, too.
 
     Args:
         workspace: the workspace.
         options: the launch file, when to end, and where the recording goes.
         python: Python nodes report, too.
-        use_sim_time: the graph's clock is the topic /clock.
+        use_sim_time: the graph's clock is the topic /clock. None: the launch file says so, or not.
+        stop: ends the mission; whenever it is set, the recording is complete.
 
     Raises:
         WorkspaceError: the workspace is not built.
         RunError: see `pytpc.ros.ros1.record_mission.run_mission`.
     """
-    env = {**workspace_env(installed(workspace)), **sink_settings(os.environ)}
+    _refuse_ros2(options.launch)
+    sourced = with_callers(nodes_env(workspace), os.environ)
+    env = {**sourced, **sink_settings(os.environ)}
+    static = Bases.of(workspace).static_info
     if python:
-        env = mission_env(env, Bases.of(workspace).static_info)
-    return run_mission(env, options, use_sim_time=use_sim_time)
+        env = mission_env(env, static)
+    if options.package and options.launch is not None:
+        launch = find_launch(env, options.package, str(options.launch))
+        options = replace(options, launch=launch, package="")
+    elif options.launch is not None and not options.launch.is_file():
+        raise RunError(f"no such launch file{_hint(workspace, options.launch)}", options.launch)
+    options = replace(options, static=static)
+    with _announced(options, workspace, static) as told:
+        return run_mission(env, told, use_sim_time=use_sim_time, stop=stop)
+
+
+def _refuse_ros2(launch: Path | None) -> None:
+    """Refuse a launch file of ROS 2, which TPC does not start by itself.
+
+    Raises:
+        RunError: it is one, or the user asks for ROS 2.
+    """
+    is_one = launch is not None and launch.name.endswith(_LAUNCH_OF_ROS2)
+    if is_one or asked_ros(os.environ) == 2:
+        named = "LAUNCH" if launch is None else shlex.quote(str(launch))
+        raise RunError(
+            "TPC starts launch files of ROS 1 alone. In one terminal: pytpc record --ros 2; in"
+            f' another: eval "$(pytpc env --setup WORKSPACE)"; ros2 launch {named}'
+        )
+
+
+def record_running(
+    options: RecordOptions,
+    stop: threading.Event | Stop,
+    env: Mapping[str, str] | None = None,
+) -> MissionRun:
+    """Record the graph that runs; see `pytpc.ros.ros1.record_mission.record_graph`.
+
+    The launch file is read with the packages of the workspace whose static information is given,
+    which need not be sourced.
+
+    Raises:
+        RunError: the master does not answer, the folder has a recording, or the bag can no longer
+            be written; it is closed, and has what was written before.
+        OSError: the bag cannot be opened.
+    """
+    with _announced(options, None, options.static) as told:
+        return record_graph(
+            told, stop, env, _launch_env(options, os.environ if env is None else env)
+        )
+
+
+def record_ros2(
+    options: RecordOptions,
+    stop: threading.Event | Stop,
+    env: Mapping[str, str] | None = None,
+) -> MissionRun:
+    """Record the graph of ROS 2; see `pytpc.ros.ros2.graph_recording.record_ros2_graph`.
+
+    Raises:
+        MissingToolError: no interpreter has rclpy.
+        RunError: ROS 2 does not work, the folder has a recording, or the file can no longer be
+            written; it is closed, and has what was written before.
+        OSError: the file cannot be opened.
+    """
+    with _announced(options, None, options.static) as told:
+        return record_ros2_graph(told, stop, env)
+
+
+def _launch_env(options: RecordOptions, env: Mapping[str, str]) -> Mapping[str, str]:
+    """The environment in which the launch file of a running robot is read."""
+    static = options.static
+    if options.launch is None or static is None or options.is_static_guessed:
+        return env
+    workspace = static if static.is_dir() else static.parent.parent
+    try:
+        return with_callers(nodes_env(workspace), env)
+    except TpcError:
+        # A static.json alone.
+        return env
+
+
+def _static_of_shell(env: Mapping[str, str]) -> Iterator[Path]:
+    """The static information of the build that ``pytpc env`` has named; it need not exist."""
+    if env.get(STATIC):
+        yield Path(env[STATIC])
+    elif env.get(DEVEL):
+        yield Path(env[DEVEL]).with_name(MERGED_FILE)
+
+
+def package_of_launch(workspace: Path, launch: Path) -> str:
+    """The package with the only launch file of this name in the workspace; empty if none has it.
+
+    It is empty as well where ``launch`` is a file, or says in which folder it is.
+
+    Raises:
+        InputError: a package.xml is broken.
+    """
+    if launch.is_file() or launch != Path(launch.name):
+        return ""
+    found = list(_packages_with(workspace, launch.name))
+    return found[0] if len(found) == 1 else ""
+
+
+def _packages_with(workspace: Path, name: str) -> Iterator[str]:
+    """The packages that have files of this name, once for each file."""
+    for folder in package_folders(workspace):
+        for path in folder.rglob("*.launch" if name.endswith(".launch") else "*"):
+            if path.name == name and path.is_file():
+                yield read_manifest(folder).name
+
+
+def _hint(workspace: Path, launch: Path) -> str:
+    """Where the workspace has launch files of this name."""
+    found = [
+        f"{package} {shlex.quote(launch.name)}"
+        for package in dict.fromkeys(_packages_with(workspace, launch.name))
+    ]
+    if not found:
+        return "; give its path, or its package and its name"
+    return f"; give its path, or package and name: {listed(found, _LISTED)}"
+
+
+@contextmanager
+def _announced(
+    options: RecordOptions, workspace: Path | None, static: Path | None
+) -> Iterator[RecordOptions]:
+    """The options with which other terminals find the recording as soon as it begins."""
+    with ExitStack() as exits:
+
+        def begin(master: str, host: str) -> None:
+            pid, launch = os.getpid(), options.launch
+            copy = options.out_dir / MERGED_FILE
+            places = (
+                *([static] if static is not None else []),
+                copy,
+                *_static_of_shell(os.environ),
+            )
+            known = next((one for one in places if one.is_file()), None)
+            entry = RunningRecording(
+                pid=pid,
+                process_start=process_start(pid) or 0,
+                master=master,
+                host=host,
+                folder=str(options.out_dir.absolute()),
+                workspace="" if workspace is None else str(workspace.absolute()),
+                static="" if known is None else str(known.absolute()),
+                launch="" if launch is None else str(launch.absolute()),
+                since=time.time(),
+            )
+            exits.enter_context(announced(entry))
+            if options.on_graph is not None:
+                options.on_graph(master, host)
+
+        yield replace(options, on_graph=begin)
+
+
+def why_no_origins(folder: Path) -> str:
+    """Why the recording of a launch file does not know where values came from; empty if it does."""
+    try:
+        document = read_document(folder / ORIGINS_FILE)
+    except InputError:
+        return ""
+    is_known = document.get("launch") is not None
+    return "" if is_known else str(document.get("reason") or "")
 
 
 def sink_settings(env: Mapping[str, str]) -> dict[str, str]:
-    """The settings of sinks in ``env``, all that a mission's nodes get of the caller's environment.
+    """The settings of sinks in ``env``, all that a mission's nodes get of TPC's variables there.
 
     A relative folder becomes absolute, as the nodes run elsewhere.
     """
@@ -52,3 +240,25 @@ def sink_settings(env: Mapping[str, str]) -> dict[str, str]:
     if "TPC_FOLDER" in settings:
         settings["TPC_FOLDER"] = str(Path(settings["TPC_FOLDER"]).absolute())
     return settings
+
+
+class NodeFiles(NamedTuple):
+    """Files that nodes wrote in the folder of this machine that has those of all missions."""
+
+    folder: Path
+    files: int
+
+
+def node_files(since_ns: int) -> NodeFiles:
+    """The files of nodes that were written since a time (ns since 1970), as far as they are here.
+
+    A running robot's nodes write to a folder of their own, not to that of the recording
+    (docs/reference/runtime.md).
+    """
+    folder = Path(f"/tmp/tpc-{os.geteuid()}")
+    if home := os.environ.get("HOME"):
+        folder = Path(home) / ".ros/tpc"
+    if ros_home := os.environ.get("ROS_HOME"):
+        folder = Path(ros_home) / "tpc"
+    folder = Path(os.environ.get("TPC_FOLDER") or folder)
+    return NodeFiles(folder, FileCounter(folder, since_ns).count().files)

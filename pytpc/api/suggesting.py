@@ -5,18 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TypedDict, Unpack
+from typing import TYPE_CHECKING, TypedDict
 
 from pytpc.api.diagnosing import Rankings
 from pytpc.api.missions import Source, load_static, read, with_names_of
 from pytpc.base.wording import Number
+from pytpc.diagnosis.diagnose import diagnose_mission
 from pytpc.diagnosis.question import PLAIN, Question
-from pytpc.diagnosis.ranking.blame import blame
-from pytpc.diagnosis.results.advice import BlamedAdvice, MarkGroup, Suggested, WhatIf
-from pytpc.diagnosis.results.suspects import Blame
+from pytpc.diagnosis.results.advice import MarkGroup, Suggested, WhatIf
+from pytpc.diagnosis.results.diagnosis import Diagnosis
 from pytpc.diagnosis.suggestion.advise import (
     advise,
-    advise_blamed,
     join_advice,
     smallest_changes_at,
     with_remedies,
@@ -27,6 +26,9 @@ from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import MARK_TYPES, Mark, MarkType
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 
 class ReplaySettings(TypedDict, total=False):
@@ -41,22 +43,11 @@ class ReplaySettings(TypedDict, total=False):
 class Suggestions:
     """What to try by all marks of a mission, and by those that say the same.
 
-    ``first`` is the advice of all marks for the first suspect, or for the parameter in question; it
-    is empty if that is not suspected.
+    ``together`` has no suspect if the parameter in question is not suspected.
     """
 
-    together: Blame
-    first: tuple[BlamedAdvice, ...]
+    together: Diagnosis
     groups: tuple[MarkGroup, ...]
-
-    @property
-    def is_one_answer(self) -> bool:
-        """Whether all marks together say what each of them says."""
-        if len(self.groups) != 1 or not self.groups[0].suspects or not self.first:
-            return False
-        joined, first = self.groups[0].suspects[0], self.first[0]
-        same = joined.advice.suspect.parameter == first.accused.parameter
-        return same and joined.remedy.value == first.remedy.value
 
 
 def suggest(
@@ -107,13 +98,12 @@ def suggest_together(rankings: Rankings, parameter: str | None = None) -> Sugges
     Raises:
         InputError: no comparison with the parameter is known.
     """
+    parameter = None if parameter is None else rankings.named(parameter)
     asked = rankings if parameter is None else rankings.only(parameter)
     recording, static, question = rankings.recording, rankings.static_info, rankings.question
-    together = blame(recording, static, question)
-    suspected = together if parameter is None else together.only(parameter)
-    first = advise_blamed(suspected, recording, static, replace(question, top=1))
+    together = diagnose_mission(recording, static, question, parameter)
     groups = join_advice(recording, static, list(asked), question)
-    return Suggestions(together, tuple(first), tuple(groups))
+    return Suggestions(together, tuple(groups))
 
 
 def what_if(

@@ -3,29 +3,46 @@
 from __future__ import annotations
 
 import os
+import shlex
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from contextlib import closing
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from pytpc.api.static_of_mission import static_near
+from pytpc.base.closest import did_you_mean
 from pytpc.base.errors import InputError
-from pytpc.build.build import installed, workspace_env
-from pytpc.ros.ros1.live_values import LiveChange, Robot, set_live, take_back_live
+from pytpc.base.paths import OWN_FOLDER
+from pytpc.base.wording import listed
+from pytpc.build.nodes_env import nodes_env
+from pytpc.ros.caller_env import with_callers
+from pytpc.ros.graphs import robot_at, set_live, take_back_live
+from pytpc.ros.live_change import LiveChange, LiveRobot
 from pytpc.ros.ros1.master import uri_of
+from pytpc.static.static_info import StaticInfo
 from pytpc.values.apply import FileChange, apply_change, entry_of, take_back_file
+from pytpc.values.declared import declared_in, read_declared
 from pytpc.values.journal import Journal, JournalEntry, folder_of
+from pytpc.values.known import Known, package_folder
+from pytpc.values.launch_kinds import is_of_ros2, is_yaml
+from pytpc.values.new_value import Refused
 from pytpc.values.origins import Origin
+from pytpc.values.recorded_files import OutsideError, RecordedFiles, workspaces_of
+from pytpc.values.ros2_arguments import origins_in_params
 from pytpc.values.target import (
     Target,
     chosen,
-    is_yaml,
     plan_addition,
     plan_origin,
     plan_yaml,
     read_target,
+    set_together,
 )
+from pytpc.values.trace import PackageNotFoundError
 
-__all__ = ["FileChange", "Journal", "JournalEntry", "LiveChange", "LiveSetting", "Origin", "Place"]
-__all__ += ["apply", "apply_live", "is_yaml", "journal", "origins", "plan", "undo"]
+__all__ = ["FileChange", "Journal", "JournalEntry", "LiveChange", "LiveSetting", "Origin"]
+__all__ += ["OutsideError", "Place"]
+__all__ += ["apply", "apply_live", "is_of_ros2", "is_yaml", "journal", "origins", "plan", "undo"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,12 +50,14 @@ class Place:
     """Where values are looked up: a mission's folder, a launch file or a YAML file.
 
     ``args`` are a launch file's arguments; ``workspace`` is the built workspace that ``$(find
-    ...)`` searches, None: the sourced one.
+    ...)`` searches, None: the sourced one. ``confirmed`` is a file that the user agrees to change
+    although it is in no workspace and only a recording names it.
     """
 
     path: Path
     args: Mapping[str, str] = field(default_factory=dict)
     workspace: Path | None = None
+    confirmed: Path | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,8 +85,13 @@ def origins(place: Place, parameter: str | None = None) -> list[Origin]:
     Raises:
         InputError: the parameter is unknown, or the place does not say where values came from.
     """
-    found = _target(place)
-    return [chosen(found, parameter)] if parameter else list(found.origins.values())
+    if is_yaml(place.path) and is_of_ros2(place.path):
+        found = Target(origins_in_params(place.path, parameter), (), None)
+    else:
+        found = _target(place)
+    if not parameter:
+        return list(found.origins.values())
+    return [chosen(found, parameter, Known.of(_static_near(place), ()))]
 
 
 def plan(
@@ -80,18 +104,37 @@ def plan(
         parameter: its name, or the end of it.
         value: as typed.
         add: add it to the launch file if no file sets it.
-        force: allow another type, and changes that affect other parameters, too.
+        force: allow another type, a value outside of the declared range, a name that nothing sets
+            or reads, changes that affect other parameters, too, and changes of a file that is not
+            as it was recorded.
 
     Raises:
+        OutsideError: a recording names a file that is in no workspace.
         InputError: there is no such parameter, or it cannot be changed there.
     """
     if is_yaml(place.path):
-        return plan_yaml(place.path, parameter, value, force=force)
-    target = _target(place)
-    origin = chosen(target, parameter)
+        change = plan_yaml(place.path, parameter, value, add=add, force=force)
+        return change if force else _checked(change, _known(place))
+    target, known = _target(place), _known(place)
+    # Only static information tells an unset parameter from a typing mistake for certain.
+    added_anyway = add and (force or not known.reads)
+    origin = chosen(target, parameter, known, unheard_of=added_anyway)
+    recorded = None
+    if target.recorded:
+        recorded = RecordedFiles(
+            launch=target.launch,
+            digests=target.files,
+            workspaces=workspaces_of(os.environ, place.workspace),
+            changes=journal().entries(),
+            confirmed=place.confirmed,
+            force=force,
+        )
     if add and origin.kind in ("default", "runtime"):
-        return plan_addition(origin, target, value)
-    return plan_origin(origin, value, force=force, files=target.files)
+        change = plan_addition(origin, target, value, recorded=recorded)
+    else:
+        change = plan_origin(origin, value, force=force, files=target.files, recorded=recorded)
+        change = replace(change, also=set_together(target, origin)[1:])
+    return change if force else _checked(change, known)
 
 
 def apply(change: FileChange, notes: Journal) -> JournalEntry | None:
@@ -104,21 +147,34 @@ def apply(change: FileChange, notes: Journal) -> JournalEntry | None:
 
 
 def apply_live(
-    parameter: str, value: str, notes: Journal, *, dry_run: bool = False, force: bool = False
+    change: tuple[str, str],
+    notes: Journal,
+    *,
+    graph: str = "",
+    dry_run: bool = False,
+    force: bool = False,
 ) -> LiveSetting:
-    """Set a parameter on the robot at ROS_MASTER_URI.
+    """Set a parameter on a running robot.
+
+    Args:
+        change: the parameter, by its full name or the end of it, and its value as typed.
+        notes: where the change is noted.
+        graph: the address of the robot's graph; empty: that of ROS_MASTER_URI.
+        dry_run: set nothing.
+        force: change the type, or set what nobody has set.
 
     Raises:
         InputError: there is no such parameter, or several.
         RunError: the robot does not answer, or refuses the value.
     """
-    robot = Robot(uri_of(os.environ))
-    name = _full_name(robot, parameter)
-    change = robot.plan(name, value, force=force)
-    if dry_run:
-        return LiveSetting(name, change, change.new, False, None)
-    entry, holds, taken = set_live(robot, change, notes)
-    return LiveSetting(name, change, holds, taken, entry)
+    parameter, value = change
+    with closing(robot_at(graph or uri_of(os.environ))) as robot:
+        name = _full_name(robot, parameter)
+        planned = robot.plan(name, value, force=force)
+        if dry_run:
+            return LiveSetting(name, planned, planned.new, False, None)
+        entry, holds, taken = set_live(robot, planned, notes)
+        return LiveSetting(name, planned, holds, taken, entry)
 
 
 def undo(
@@ -142,21 +198,71 @@ def undo(
     return entry, None
 
 
+def _checked(change: FileChange, known: Known) -> FileChange:
+    """The change, if the value has the declared type and range of each parameter.
+
+    Raises:
+        InputError: it is not.
+    """
+    try:
+        known.check_type(change.parameters, change.new)
+        known.check_range(change.parameters, change.new)
+    except Refused as error:
+        raise InputError(str(error), change.path, change.lineno) from error
+    return change
+
+
+def _known(place: Place) -> Known:
+    """What nodes read, and what is declared, as far as the place leads to it."""
+    static = _static_near(place)
+    package = package_folder(place.path)
+    folders = [place.path, *([] if package is None else [package])]
+    if static is None:
+        return Known.of(None, read_declared(folders))
+    return Known.of(static, declared_in(static, folders))
+
+
+def _static_near(place: Place) -> StaticInfo | None:
+    """The static information of the mission, or of the workspace in which the file is."""
+    return static_near(place.path if place.workspace is None else place.workspace)
+
+
 def _target(place: Place) -> Target:
     env: Mapping[str, str] = os.environ
     if place.workspace is not None:
-        env = workspace_env(installed(place.workspace))
+        # As `record` has it.
+        env = with_callers(nodes_env(place.workspace), os.environ)
     if is_yaml(place.path):
         raise InputError("a YAML file does not say where other values come from", place.path)
-    return read_target(place.path, place.args, env)
+    try:
+        return read_target(place.path, place.args, env)
+    except PackageNotFoundError as error:
+        if place.workspace is not None:
+            raise
+        built = _workspace_above(place.path)
+        named = "WORKSPACE" if built is None else shlex.quote(str(built))
+        raise InputError(
+            f"{error.message}; give the built workspace that has it: --workspace {named}",
+            error.path,
+        ) from error
 
 
-def _full_name(robot: Robot, parameter: str) -> str:
+def _workspace_above(path: Path) -> Path | None:
+    """The workspace that `pytpc build` built and that a file is in."""
+    folders = path.absolute().parents
+    return next((folder for folder in folders if (folder / OWN_FOLDER).is_dir()), None)
+
+
+def _full_name(robot: LiveRobot, parameter: str) -> str:
     if parameter.startswith("/"):
         return parameter
     wanted = parameter.lstrip("~/")
-    meant = [name for name in robot.parameters() if name.endswith(f"/{wanted}")]
+    names = robot.parameters()
+    meant = [name for name in names if name.endswith((f"/{wanted}", f".{wanted}"))]
     if len(meant) != 1:
-        names = ", ".join(meant[:8]) or "none"
-        raise InputError(f"give the full name: the robot has {names} that ends with {parameter}")
+        hint = "" if meant else did_you_mean(parameter, names)
+        found = listed(meant, 8) or "none"
+        raise InputError(
+            f"give the full name: the robot has {found} that ends with {parameter}{hint}"
+        )
     return meant[0]

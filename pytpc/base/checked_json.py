@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from pytpc.base.errors import InputError
+from pytpc.base.regular_files import LARGEST_TEXT, read_file
 from pytpc.base.wording import plain
 
 if TYPE_CHECKING:
@@ -27,24 +28,27 @@ RULES_SCHEMA = "rules.schema.json"
 PYTHON_RULES_SCHEMA = "python_rules.schema.json"
 _PACKAGE = "pytpc.base"
 _LONGEST_MESSAGE = 160
+_REBUILD = "; if another version of TPC wrote it, rebuild with `pytpc build`"
+_BYTES_OF_VALUE = 16
 # Of this many faults the one is shown that explains the others.
 _FAULTS = 20
 _SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")
 
 
-def parse_json(path: Path, *, half_characters: bool = False) -> object:
+def parse_json(path: Path, *, half_characters: bool = False, most: int = LARGEST_TEXT) -> object:
     """The JSON value in ``path``.
 
     ``half_characters`` allows escapes of half a surrogate pair, which no UTF-8 file can hold: names
-    of files that are not UTF-8 are written so.
+    of files that are not UTF-8 are written so. The file has at most ``most`` bytes.
 
     Raises:
-        InputError: the file cannot be read, is not UTF-8 or not JSON (with the line of the fault).
+        InputError: the file cannot be read, is not UTF-8, not JSON (with the line of the fault), or
+            too large.
     """
-    try:
-        raw = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror or error}", path) from error
+    raw = read_file(path, most)
+    # Each needs a hundred times as much memory as it has bytes.
+    if sum(raw.count(one) for one in (b",", b"[", b"{")) > most // _BYTES_OF_VALUE:
+        raise InputError(f"has more than {most // _BYTES_OF_VALUE:,} values", path)
     try:
         data: object = json.loads(
             raw.decode("utf-8"), parse_constant=_refuse_constant, parse_float=_finite
@@ -105,7 +109,7 @@ def check_unit(data: object, path: Path, pointer: str = "") -> dict[str, Any]:
 
 
 def check_version(version: object, path: Path, pointer: str = "") -> None:
-    """Check that a document is not of a later version of static information.
+    """Check that a document is not of another version of static information.
 
     Raises:
         InputError: it is.
@@ -114,6 +118,12 @@ def check_version(version: object, path: Path, pointer: str = "") -> None:
         raise InputError(
             f"{pointer}/schema: written by a newer TPC (format {version}; this one reads"
             f" {SCHEMA_VERSION}); rebuild the workspace, or upgrade TPC",
+            path,
+        )
+    if isinstance(version, int) and version < SCHEMA_VERSION:
+        raise InputError(
+            f"{pointer}/schema: written by an older TPC (format {version}; this one"
+            f" reads {SCHEMA_VERSION}); rebuild the workspace with `pytpc build`",
             path,
         )
 
@@ -137,7 +147,8 @@ def check_schema(
     found = _fault(data, name, package)
     if found is not None:
         place, message = found
-        raise InputError(f"{pointer + _pointer(place) or '/'}: {_shortened(message)}", path)
+        old = _REBUILD if name in (UNIT_SCHEMA, MERGED_SCHEMA) else ""
+        raise InputError(f"{pointer + _pointer(place) or '/'}: {_shortened(message)}{old}", path)
 
 
 def check_rules(path: Path) -> None:
@@ -264,7 +275,7 @@ def _validator(name: str, package: str) -> Draft202012Validator:
 
 
 def _schema(name: str, package: str) -> dict[str, Any]:
-    text = files(package).joinpath("schema", name).read_text("utf-8")
+    text = files(package).joinpath("schema").joinpath(name).read_text("utf-8")
     schema: dict[str, Any] = json.loads(text)
     return schema
 

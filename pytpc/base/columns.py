@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar, Self, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,10 @@ import pyarrow.parquet as pq
 
 from pytpc.base.atomic import replacing
 from pytpc.base.errors import InputError
+from pytpc.base.regular_files import check_file, open_file
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
 Int64s = npt.NDArray[np.int64]
 Int32s = npt.NDArray[np.int32]
@@ -28,6 +32,10 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 Read = TypeVar("Read")
 Columns = dict[str, npt.NDArray[np.generic]]
 
+_ANY_ROWS = 1 << 22
+_MOST_WORD_BYTES = 1 << 24
+_BYTES_OF_ROW = 16
+_MOST_WORDS = 1 << 20
 WORDS = pa.dictionary(pa.int32(), pa.string())
 _KINDS: dict[str, tuple[pa.DataType, type[np.generic]]] = {
     "Int32s": (WORDS, np.int32),
@@ -268,11 +276,14 @@ def read_table(path: Path, what: str, of: Callable[[pa.Table], Read]) -> Read:
     """
     with _as_input_errors(path, what):
         # This error has the words of the system.
-        path.open("rb").close()
+        open_file(path).close()
         # Arrow's threads release their source after the table is complete. If the source is a
         # Python object, a process that ends just then is aborted (apache/arrow#34314, #33975).
         with pa.OSFile(str(path)) as file:
-            table = pq.ParquetFile(file).read()
+            parquet = pq.ParquetFile(file)
+            _check_sizes(parquet.metadata, path.stat().st_size)
+            table = parquet.read()
+        table.validate(full=True)
         return of(table)
 
 
@@ -293,10 +304,14 @@ def read_parts(path: Path, what: str, schema: pa.Schema, rows: int) -> Iterator[
     Raises:
         InputError: the file cannot be read, is no Parquet, or has other columns.
     """
+    check_file(path)
     with _as_input_errors(path, what), pq.ParquetFile(path) as file:
         check_schema(file.schema_arrow, schema)
+        _check_sizes(file.metadata, path.stat().st_size)
         for batch in file.iter_batches(rows):
-            yield pa.Table.from_batches([batch])
+            table = pa.Table.from_batches([batch])
+            table.validate(full=True)
+            yield table
 
 
 @contextlib.contextmanager
@@ -309,6 +324,30 @@ def _as_input_errors(path: Path, what: str) -> Iterator[None]:
         raise InputError(f"cannot be read: {error.strerror or error}", path) from error
     except (pa.ArrowException, ValueError) as error:
         raise InputError(f"not a file of {what}: {error}", path) from error
+
+
+def _check_sizes(metadata: pq.FileMetaData, size: int) -> None:
+    """Check that what a file says of itself fits into memory.
+
+    A robot's times differ from row to row, so that each row needs more than a bit of the file. A
+    word is a key or the name of a node.
+
+    Raises:
+        ValueError: it does not fit.
+    """
+    if metadata.num_rows > max(_ANY_ROWS, 8 * size):
+        raise ValueError(f"{metadata.num_rows:,} rows in {size:,} bytes: not those of a robot")
+    for number in range(metadata.num_row_groups):
+        group = metadata.row_group(number)
+        for place in range(group.num_columns):
+            column = group.column(place)
+            most = _MOST_WORD_BYTES + _BYTES_OF_ROW * group.num_rows
+            if column.total_uncompressed_size > most:
+                name = column.path_in_schema
+                raise ValueError(
+                    f"column {name} has {column.total_uncompressed_size:,} bytes in"
+                    f" {group.num_rows:,} rows; at most {most:,} are read"
+                )
 
 
 def _check_words(codes: npt.NDArray[Any], words: Sequence[str]) -> None:
@@ -330,4 +369,8 @@ def words_and_codes(column: pa.ChunkedArray) -> tuple[list[str], Int32s]:
     whole = column.unify_dictionaries().combine_chunks()
     if isinstance(whole, pa.ChunkedArray):
         whole = pa.concat_arrays(whole.chunks)
+    if whole.dictionary.null_count:
+        raise InputError("a key or node without a name")
+    if len(whole.dictionary) > _MOST_WORDS:
+        raise InputError(f"{len(whole.dictionary):,} different words; at most {_MOST_WORDS:,}")
     return whole.dictionary.to_pylist(), whole.indices.to_numpy(zero_copy_only=False)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from os import PathLike, fspath
 
+from pytpc.base.wording import plain
+
 
 class TpcError(Exception):
     """A problem that the user can fix.
@@ -26,12 +28,12 @@ class TpcError(Exception):
         self.line = line
 
     def __str__(self) -> str:
-        """``path:line: message``, on one line whatever the message holds."""
+        """``path:line: message``, on one line and printable whatever the two hold."""
         place = "" if self.path is None else f"{self.path}:"
         if place and self.line is not None:
             place += f"{self.line}:"
         text = " ".join(self.message.split())
-        return f"{place} {text}" if place else text
+        return plain(f"{place} {text}" if place else text)
 
 
 class InputError(TpcError):

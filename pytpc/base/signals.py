@@ -5,19 +5,23 @@ from __future__ import annotations
 import contextlib
 import os
 import signal
+import stat
 import subprocess
 import threading
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from types import FrameType
 from typing import Any
+
+_TURN_S = 0.1
 
 
 @contextlib.contextmanager
 def signals_end() -> Iterator[None]:
     """Make SIGTERM and SIGHUP raise SystemExit within the block, so that started processes end.
 
-    A process in the background ignores SIGINT and goes on doing so, but the processes that it
-    starts do not: SIGINT must end them.
+    A SIGHUP that is ignored, as under nohup, stays so. A process in the background ignores SIGINT
+    and goes on doing so, but the processes that it starts do not: SIGINT must end them.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
@@ -26,7 +30,8 @@ def signals_end() -> Iterator[None]:
     def leave(number: int, _frame: FrameType | None) -> None:
         raise SystemExit(128 + number)
 
-    before = {number: signal.signal(number, leave) for number in (signal.SIGTERM, signal.SIGHUP)}
+    ends = [signal.SIGTERM] if _hang_up_is_ignored() else [signal.SIGTERM, signal.SIGHUP]
+    before = {number: signal.signal(number, leave) for number in ends}
     if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
         before[signal.SIGINT] = signal.signal(signal.SIGINT, lambda *_: None)
     try:
@@ -44,13 +49,96 @@ def stop_on_signals() -> threading.Event:
     return stop
 
 
-def end_group(process: subprocess.Popen[Any], sigint_s: float, sigterm_s: float) -> int:
+class Stop:
+    """Whether this process was asked to stop, and asked again while it did.
+
+    It has no lock: a signal's handler may interrupt that of another signal.
+
+    Args:
+        reply: what to say on standard error to the first SIGINT or SIGTERM.
+    """
+
+    def __init__(self, reply: str = "") -> None:
+        """Nobody asked."""
+        self._reply = reply
+        self._asked = False
+        self._asked_again = False
+
+    def is_set(self) -> bool:
+        """Whether it was asked to stop."""
+        return self._asked
+
+    @property
+    def in_a_hurry(self) -> bool:
+        """Whether it was asked again: what can be left out is left out."""
+        return self._asked_again
+
+    def set(self) -> None:
+        """Ask it to stop."""
+        self._asked = True
+
+    def set_again(self) -> None:
+        """Ask it to stop; from the second time on, not to wait for anything."""
+        self._asked_again = self._asked
+        self._asked = True
+
+    @contextlib.contextmanager
+    def on_signals(self) -> Iterator[None]:
+        """Have SIGINT, SIGTERM and SIGHUP ask within the block; call it in the main thread.
+
+        SIGHUP says that the terminal is gone. What is written to it from then on is lost, but is
+        no error. Where SIGHUP is ignored, as under nohup, it stays so.
+        """
+
+        def hang_up(*_: object) -> None:
+            self.set()
+            _leave_terminal()
+
+        def ask(*_: object) -> None:
+            if self._reply and not self._asked:
+                # Streams of Python may be in the middle of a write.
+                with contextlib.suppress(OSError):
+                    os.write(2, f"\n{self._reply}\n".encode())
+            self.set_again()
+
+        handlers = {signal.SIGINT: ask, signal.SIGTERM: ask}
+        if not _hang_up_is_ignored():
+            handlers[signal.SIGHUP] = hang_up
+        before = {number: signal.signal(number, handler) for number, handler in handlers.items()}
+        try:
+            yield
+        finally:
+            for number, earlier in before.items():
+                signal.signal(number, earlier)
+
+
+def _hang_up_is_ignored() -> bool:
+    return signal.getsignal(signal.SIGHUP) == signal.SIG_IGN
+
+
+def _leave_terminal() -> None:
+    """Send standard output and error to nowhere, where they are a terminal."""
+    nowhere = os.open(os.devnull, os.O_RDWR)
+    for descriptor in (1, 2):
+        # isatty() says no of a terminal that is gone, but it is still no file and no pipe.
+        if stat.S_ISCHR(os.fstat(descriptor).st_mode):
+            os.dup2(nowhere, descriptor)
+    os.close(nowhere)
+
+
+def end_group(
+    process: subprocess.Popen[Any],
+    sigint_s: float,
+    sigterm_s: float,
+    hurry: Callable[[], bool] = lambda: False,
+) -> int:
     """End a process and its group: SIGINT, after a while SIGTERM, then SIGKILL.
 
     Args:
         process: the leader of its group.
         sigint_s: how long to wait after SIGINT.
         sigterm_s: the same after SIGTERM.
+        hurry: whether not to wait any longer after SIGINT.
 
     Returns:
         Its exit status.
@@ -58,8 +146,14 @@ def end_group(process: subprocess.Popen[Any], sigint_s: float, sigterm_s: float)
     for number, patience in ((signal.SIGINT, sigint_s), (signal.SIGTERM, sigterm_s)):
         with contextlib.suppress(ProcessLookupError):
             os.killpg(process.pid, number)
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            return process.wait(patience)
+        until = time.monotonic() + patience
+        while process.poll() is None and time.monotonic() < until:
+            if number == signal.SIGINT and hurry():
+                break
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                return process.wait(_TURN_S)
+        if process.poll() is not None:
+            return process.wait()
     with contextlib.suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGKILL)
     return process.wait()

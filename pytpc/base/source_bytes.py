@@ -2,23 +2,30 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 import tokenize
 from pathlib import Path
 
-from pytpc.base.errors import InputError
+from pytpc.base.regular_files import read_file
 
 
 def read_bytes(path: Path) -> bytes:
     """The bytes of a file.
 
     Raises:
+        InputError: it cannot be read, is no file, or is larger than any file of text.
+    """
+    return read_file(path)
+
+
+def sha256_of(path: Path) -> str:
+    """The SHA-256 of a file's bytes.
+
+    Raises:
         InputError: it cannot be read.
     """
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror or error}", path) from error
+    return hashlib.sha256(read_bytes(path)).hexdigest()
 
 
 def source_bytes(path: Path) -> bytes:

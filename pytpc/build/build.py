@@ -28,13 +28,17 @@ from pytpc.base.paths import (
     require_tools,
 )
 from pytpc.build.collect import find_copies
+from pytpc.build.devel_space import write_devel_space
 from pytpc.build.doubled import doubled_sources
 from pytpc.build.fallback import LeftAlone
+from pytpc.build.missing import hint
 from pytpc.build.python_nodes import PythonBuild, python_of_build
 from pytpc.build.python_units import names_of
 from pytpc.build.reconcile import left_out_units, stale_files
+from pytpc.build.ros_parts import Part, parts_of, require_ros2, run_under
 from pytpc.python_analysis.rules_file import Rules, load_rules
 from pytpc.static.link_unit import LeftOut, LinkUnit
+from pytpc.static.sources import with_source_digests
 from pytpc.static.static_info import StaticInfo, is_python_file, load_link_unit, unit_files
 from pytpc.workspace.cmake_targets import ask_for_targets
 from pytpc.workspace.colcon import (
@@ -45,6 +49,7 @@ from pytpc.workspace.colcon import (
     colcon_command,
     run_colcon,
 )
+from pytpc.workspace.enclosing import refuse_inside
 from pytpc.workspace.packages import (
     Package,
     find_packages,
@@ -53,6 +58,11 @@ from pytpc.workspace.packages import (
     refuse_cycles,
     select_packages,
 )
+from pytpc.workspace.path_characters import refuse_characters
+from pytpc.workspace.ros2 import Ros2, how_to_source
+
+# How long a set-up script may take; those of large workspaces take seconds.
+_SET_UP_S = 120.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +70,7 @@ class BuildResult:
     """A build that succeeded.
 
     ``left_alone`` are packages that build only without TPC, each with the reason; ``seconds`` is
-    wall time.
+    wall time; ``ros2`` is what packages of ROS 2 were built for.
     """
 
     bases: Bases
@@ -68,6 +78,7 @@ class BuildResult:
     static: StaticInfo
     left_alone: dict[str, str]
     seconds: float
+    ros2: Ros2 | None = None
 
     @property
     def units(self) -> tuple[LinkUnit, ...]:
@@ -93,8 +104,9 @@ def build_workspace(
         on_scripts: called with (scripts analysed, scripts in all).
 
     Raises:
-        WorkspaceError: no packages, an unknown name, a folder that cannot be written or that
-            another build is at work in, or a build folder that was configured without TPC.
+        WorkspaceError: no packages, an unknown name, a folder inside a workspace, one that cannot
+            be written or that another build is at work in, or a build folder that was configured
+            without TPC.
         InputError: a broken package.xml, CMakeLists.txt, file of rules or static information.
         MissingToolError: TPC's C++ half, a compiler, colcon or ROS is absent.
         BuildError: a package does not build.
@@ -104,7 +116,10 @@ def build_workspace(
     if ".." in workspace.parts:
         # colcon and CMake take that out of a path, and the names of folders have to be theirs.
         workspace = workspace.resolve()
+    refuse_characters(workspace)
     found = find_packages(workspace)
+    if options.bases is None:
+        refuse_inside(workspace)
     refuse_cycles(found, workspace)
     chosen = select_packages(found, options.packages)
     for package in chosen:
@@ -113,8 +128,12 @@ def build_workspace(
         check_rules(options.rules)
     rules = _python_rules(options)
     toolchain = _require_all(found)
+    for package in chosen:
+        refuse_characters(package.path)
     bases = options.bases if options.bases is not None else Bases.of(workspace)
-    build = _Build(workspace, bases, found, toolchain, options)
+    refuse_characters(bases.root)
+    ros2 = require_ros2(found)
+    build = _Build(workspace, bases, found, toolchain, options, ros2)
     if build.with_ours:
         _require_toolchain(bases, chosen, toolchain)
     scripts = PythonBuild(
@@ -127,10 +146,11 @@ def build_workspace(
     )
     with _alone_in(bases):
         alone = build.run(on_output)
-        static = _gather(scripts, alone.reasons, on_scripts)
+        write_devel_space(bases, found)
+        static = with_source_digests(_gather(scripts, alone.reasons, on_scripts))
         static.save(bases.static_info)
     seconds = time.monotonic() - began
-    return BuildResult(bases, tuple(chosen), static, alone.reasons, seconds)
+    return BuildResult(bases, tuple(chosen), static, alone.reasons, seconds, ros2)
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,6 +162,7 @@ class _Build:
     packages: Sequence[Package]
     toolchain: Path
     options: BuildOptions
+    ros2: Ros2 | None
 
     @property
     def with_ours(self) -> bool:
@@ -156,32 +177,50 @@ class _Build:
             BuildError: a package builds neither with TPC nor without.
         """
         alone = _prepare(self.bases, self.packages, retry=self.options.retry)
+        for part in parts_of(self.packages, self.options.packages, self.bases, self.ros2):
+            self._run_part(part, alone, on_output)
+        run_under(self.bases, self.packages, self.ros2)
+        return alone
+
+    def _run_part(
+        self, part: Part, alone: LeftAlone, on_output: Callable[[str], None] | None
+    ) -> None:
         while True:
+            command = self._command(part, alone)
             try:
-                run_colcon(self._command(alone), self.workspace, self.bases, on_output)
+                run_colcon(command, self.workspace, self.bases, on_output, part.environment)
             except BuildError as error:
                 if not (self.options.fallback and self.with_ours and alone.can_try(error)):
                     alone.give_up(error)
-                    raise
+                    raise self._explained(error) from None
                 if on_output is not None:
                     on_output(f"{error.package} does not build with TPC; building it without")
                 alone.begin(error)
                 _ask(self.bases, self.packages)
             else:
                 alone.keep()
-                return alone
+                return
 
-    def _command(self, alone: LeftAlone) -> list[str]:
+    def _explained(self, error: BuildError) -> BuildError:
+        """The error, with what a package of ROS 2 lacks."""
+        package = next((one for one in self.packages if one.name == error.package), None)
+        if package is not None:
+            said = hint(package, error.tail, self.ros2, how_to_source())
+            error.message += f"; {said}" if said else ""
+        return error
+
+    def _command(self, part: Part, alone: LeftAlone) -> list[str]:
         options = self.options
         # Said both ways: a build folder keeps what it was told last.
         for_cmake = (
             f"-DTPC_CONSTANTS={'ON' if options.constants else 'OFF'}",
             f"-DTPC_TESTS={'ON' if options.tests else 'OFF'}",
             f"-DTPC_LEFT_ALONE={';'.join(map(str, alone.folders))}",
+            *part.cmake_args,
             *options.cmake_args,
         )
-        asked = replace(options, cmake_args=for_cmake)
-        return colcon_command(self.bases, self.packages, self.toolchain, asked)
+        asked = replace(options, cmake_args=for_cmake, packages=part.names)
+        return colcon_command(self.bases, part.packages, self.toolchain, asked)
 
 
 def installed(workspace: Path) -> Path:
@@ -205,22 +244,31 @@ def workspace_env(install_base: Path, begin: Mapping[str, str] | None = None) ->
 
     Raises:
         WorkspaceError: the folder is not an install base.
-        RunError: the set-up script fails.
+        RunError: the set-up script fails, or does not end.
     """
     script = install_base.absolute() / "setup.bash"
     if not script.is_file():
-        raise WorkspaceError("no setup.bash here; build the workspace first", install_base)
+        raise WorkspaceError(
+            "no setup.bash here; build the workspace first, with `pytpc build`", install_base
+        )
     if begin is None:
         kept = ("HOME", "USER", "LOGNAME", "LANG", "LC_ALL", "TERM", "TZ", "TMPDIR")
         clean = {name: os.environ[name] for name in kept if name in os.environ}
         begin = {**clean, "PATH": SYSTEM_PATH}
-    ran = subprocess.run(
-        ["/bin/bash", "--norc", "--noprofile", "-c", 'source "$1" >&2 && env -0', "bash", script],
-        env=dict(begin),
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        check=False,
-    )
+    bash = ["/bin/bash", "--norc", "--noprofile", "-c"]
+    try:
+        ran = subprocess.run(
+            [*bash, 'source "$1" >&2 && env -0', "bash", script],
+            env=dict(begin),
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            timeout=_SET_UP_S,
+            check=False,
+            # A Ctrl-C is for the program that asks, which may go on.
+            start_new_session=True,
+        )
+    except subprocess.TimeoutExpired as error:
+        raise RunError(f"does not end within {_SET_UP_S:.0f} s", script) from error
     if ran.returncode != 0:
         said = ran.stderr.decode(errors="replace").strip().splitlines() or ["it says nothing"]
         raise RunError(f"fails with status {ran.returncode}: {said[-1]}", script)

@@ -6,12 +6,12 @@ import filecmp
 import mmap
 import os
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import takewhile
 from pathlib import Path
 
-from pytpc.base.errors import WorkspaceError
-from pytpc.base.paths import OWN_FOLDER
+from pytpc.base.errors import InputError, WorkspaceError
+from pytpc.base.paths import MERGED_FILE, OWN_FOLDER
 from pytpc.build.doubled import doubled_sources
 from pytpc.build.python_units import PythonUnits, named_beside, names_of
 from pytpc.build.reconcile import build_folders, known_targets, left_out_units, target_names
@@ -25,7 +25,7 @@ from pytpc.build.stale import (
     drop_without_sources,
 )
 from pytpc.static.link_unit import LeftOut, LinkUnit
-from pytpc.static.static_info import StaticInfo, load_link_unit, unit_files
+from pytpc.static.static_info import StaticInfo, load_link_unit, not_built, unit_files
 
 _NOT_SOURCES = frozenset({".git", ".hg", ".svn", OWN_FOLDER})
 
@@ -58,7 +58,7 @@ def collect_sources(
         WorkspaceError: there is no static information in one of them.
     """
     fresh = python or PythonUnits()
-    files, copies = _read(sources, on_progress, required=not fresh.units)
+    files, copies, digests = _read(sources, on_progress, required=not fresh.units)
     files = [file for file in files if not _is_replaced(file.unit, fresh)]
     folders = sorted({file.build_folder for file in files})
     kept, stale = drop_stale(files, {folder: _built_targets(folder) for folder in folders})
@@ -81,6 +81,7 @@ def collect_sources(
         (*left_out, *fresh.left_out),
         doubled_sources(sorted(every), units),
     )
+    static = replace(static, sources=tuple(sorted(digests.items())))
     return Collected(static, (*stale, *scriptless, *orphans, *repeated))
 
 
@@ -93,8 +94,8 @@ def _is_replaced(unit: LinkUnit, fresh: PythonUnits) -> bool:
 
 def _read(
     sources: Sequence[Path], on_progress: Callable[[int, int], None] | None, *, required: bool
-) -> tuple[list[UnitFile], dict[str, str]]:
-    """All files of link units, and the copies that documents know.
+) -> tuple[list[UnitFile], dict[str, str], dict[str, str]]:
+    """All files of link units, and the copies and digests of sources that documents know.
 
     Args:
         sources: as for ``collect_sources``.
@@ -106,24 +107,41 @@ def _read(
         WorkspaceError: a folder has none.
     """
     copies: dict[str, str] = {}
+    digests: dict[str, str] = {}
     files: list[UnitFile] = []
     paths: set[Path] = set()
     for source in sources:
         if source.is_file():
             document = StaticInfo.load(source)
             copies.update(document.copies)
+            digests.update(document.sources)
             written = source.stat().st_mtime_ns
             files += [UnitFile(source.absolute(), unit, written) for unit in document.units]
             continue
         below = [path.absolute() for base in _build_bases(source) for path in unit_files(base)]
         if not below and required:
-            raise WorkspaceError("no static information here; build with `pytpc build`", source)
+            raise WorkspaceError(not_built(source), source)
         paths.update(below)
+        digests.update(_digests_of_build(source, below))
     for number, path in enumerate(sorted(paths), start=1):
         files.append(UnitFile(path, load_link_unit(path), path.stat().st_mtime_ns))
         if on_progress is not None:
             on_progress(number, len(paths))
-    return files, copies
+    return files, copies, digests
+
+
+def _digests_of_build(workspace: Path, units: Iterable[Path]) -> dict[str, str]:
+    """The digests that ``pytpc build`` noted, unless a unit was linked after it."""
+    merged = workspace / OWN_FOLDER / MERGED_FILE
+    if not merged.is_file():
+        return {}
+    written = merged.stat().st_mtime_ns
+    if any(unit.stat().st_mtime_ns > written for unit in units):
+        return {}
+    try:
+        return dict(StaticInfo.load(merged).sources)
+    except InputError:
+        return {}
 
 
 def _left_out(folders: Iterable[Path], units: Iterable[LinkUnit]) -> list[LeftOut]:

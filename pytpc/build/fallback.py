@@ -15,11 +15,12 @@ from pathlib import Path
 from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import dump_json, parse_json
 from pytpc.base.errors import InputError
+from pytpc.base.paths import clang_release
 from pytpc.workspace.colcon import Bases, BuildError
 from pytpc.workspace.packages import Package
 
 # gcc comes with OpenMP; for clang it is a separate package.
-OPENMP_MEND = "clang's OpenMP may be missing: apt-get install libomp-19-dev"
+OPENMP_MEND = "clang's OpenMP may be missing: apt-get install libomp-{}-dev"
 _OPENMP = re.compile(r"Could NOT find OpenMP|'omp\.h' file not found|unable to find library -lomp")
 _CMAKE_ERROR = re.compile(r"^CMake Error(?: at (?P<place>[^\s:]+:\d+))?")
 _ERRORS = tuple(
@@ -136,7 +137,7 @@ def _reason(error: BuildError) -> str:
     text = "\n".join(error.tail)
     why = first_error(text) if text else error.message
     if _OPENMP.search(text):
-        why += f"; {OPENMP_MEND}"
+        why += f"; {OPENMP_MEND.format(clang_release())}"
     return why
 
 

@@ -39,6 +39,16 @@ CONSTANTS = click.option(
     "--constants", is_flag=True, help="Report comparisons with constants, too."
 )
 
+REFERENCE = click.option(
+    "--reference",
+    "references",
+    type=PATH,
+    multiple=True,
+    metavar="RECORDING",
+    help="A good run of the same robot; may be repeated, the last one last. What differs from it is"
+    " shown first, and a parameter that kept its value is unlikely to be the cause.",
+)
+
 
 def as_object(
     kind: Callable[..., Arguments],

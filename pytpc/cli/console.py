@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
+import re
 import sys
 import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TextIO, cast
 
 import click
 from rich.console import Console
@@ -15,31 +15,58 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from pytpc.base.wording import many, plain
+from pytpc.base.wording import many, plain, plain_json
 from pytpc.build.reconcile import remark
+from pytpc.cli.lines import progress_console, say
 from pytpc.cli.selecting import place_of
 from pytpc.static.loops import inner_loops
 from pytpc.static.static_info import StaticInfo
 
 if TYPE_CHECKING:
     from rich.progress import Progress
+    from rich.status import Status
 
 Advance = Callable[[int, int], None]
 
-# Piped output has no width, and 80 columns are too few for a table.
-_PIPED_WIDTH = 160
+# Piped output has no width: a row of a table is a line, however long.
+_PIPED_WIDTH = 1_000_000
+# Without the first part, a long gap between columns takes the square of its length.
+_FILLING = re.compile(r"(?<! ) +$", re.MULTILINE)
 _SILENT_S = 2.0
 _MOST_IN_LOOPS = 5
 
 
+class _Trimmed:
+    """Standard output without the spaces that fill the lines of a table."""
+
+    def write(self, text: str) -> int:
+        """Write what a console prints, which are whole lines."""
+        return sys.stdout.write(_FILLING.sub("", text))
+
+    def __getattr__(self, name: str) -> object:
+        return getattr(sys.stdout, name)
+
+
 def console() -> Console:
     """The console for tables."""
-    return Console(width=None if sys.stdout.isatty() else _PIPED_WIDTH)
+    if sys.stdout.isatty():
+        return Console()
+    return Console(width=_PIPED_WIDTH, file=cast(TextIO, _Trimmed()))
 
 
-def print_json(document: object) -> None:
-    """Print a document as JSON on standard output."""
-    click.echo(json.dumps(document, indent=1, ensure_ascii=False))
+def waiting(console: Console, what: str) -> Status:
+    """A moving sign before what is being done; of ASCII where the terminal takes no more."""
+    spinner = "dots" if console.encoding.startswith("utf") else "line"
+    return console.status(escape(plain(what)), spinner=spinner)
+
+
+def print_json(document: object, *, indent: int | None = 1) -> None:
+    """Print a document as JSON on standard output; each command's ``--json`` goes through here.
+
+    All but printable ASCII is escaped: names and notes of a robot can hold control characters,
+    characters that reverse the direction of text, and halves of surrogate pairs.
+    """
+    click.echo(plain_json(document, indent=indent))
 
 
 def table_of(
@@ -59,13 +86,25 @@ def table_of(
 
 def warn(text: str) -> None:
     """One line on standard error."""
-    click.echo(f"pytpc: warning: {' '.join(text.split())}", err=True)
+    say(plain(f"pytpc: warning: {' '.join(text.split())}"))
+
+
+def tell_next(command: str) -> None:
+    """Say what to type next, to a person: programs that read the output get no such line."""
+    if sys.stdout.isatty():
+        click.echo(plain(f"next: {command}"))
+
+
+def tell_person(text: str) -> None:
+    """A line on standard error that a program which reads the output has no use for."""
+    if sys.stdout.isatty():
+        say(plain(f"pytpc: {text}"))
 
 
 @contextmanager
 def progress(what: str) -> Iterator[Advance]:
     """Show progress after two seconds: a bar, or lines if the output is piped."""
-    console = Console(stderr=True)
+    console = progress_console()
     bar: Progress | None = None
     told = time.monotonic()
 
@@ -74,7 +113,7 @@ def progress(what: str) -> Iterator[Advance]:
         if time.monotonic() - told < _SILENT_S:
             return
         if not console.is_terminal:
-            click.echo(f"{plain(what)}: {done:,} of {total:,}", err=True)
+            say(f"{plain(what)}: {done:,} of {total:,}")
             told = time.monotonic()
             return
         if bar is None:
@@ -105,14 +144,14 @@ def tell_left_out(static: StaticInfo) -> None:
     """A line for each link unit that was not analysed, and for each source that does not report."""
     for left_out in static.left_out:
         text = f"{left_out.package}/{left_out.link_unit} reports nothing: {left_out.reason}"
-        click.echo(plain(text), err=True)
+        say(plain(text))
     for doubled in static.doubled:
         text = (
             f"{doubled.package}/{doubled.link_unit}: {many(doubled.comparisons, 'comparison')} in"
             f" {doubled.file} may not report: {doubled.runs} has the file, too, and a process that"
             " loads that first runs its functions"
         )
-        click.echo(plain(text), err=True)
+        say(plain(text))
 
 
 def warn_of_failed(static: StaticInfo) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict
 from pathlib import Path
 
@@ -11,9 +10,10 @@ import click
 from pytpc.api.missions import TOLERANCE_S, Converted, convert
 from pytpc.base.wording import many
 from pytpc.cli.arguments import JSON, PATH
-from pytpc.cli.console import progress
+from pytpc.cli.console import print_json, progress, tell_person
 from pytpc.cli.options import warn_about
 from pytpc.recording.marks import MARK_TYPES
+from pytpc.recording.marks_home import is_same_mission
 
 
 @click.command("convert")
@@ -61,7 +61,7 @@ def convert_command(
     warn_about(recording)
     kinds = [mark.type for mark in recording.marks]
     if as_json:
-        click.echo(json.dumps(_summary_of(outcome, output), ensure_ascii=False))
+        print_json(_summary_of(outcome, output), indent=None)
         return
     marks = ", ".join(f"{kinds.count(kind)} of type {kind}" for kind in MARK_TYPES)
     if None in kinds:
@@ -71,12 +71,18 @@ def convert_command(
         f"{many(outcome.events, 'report')} of {many(outcome.comparisons, 'comparison')}{summaries},"
         f" {many(len(kinds), 'mark')} ({marks}) in {recording.seconds:.1f} s: {output}"
     )
+    if not any(is_same_mission(one, output) for one in inputs):
+        tell_person(
+            f"{output} has marks of its own from now on: what is marked in {inputs[0]} later is not"
+            " in it"
+        )
 
 
 def _summary_of(outcome: Converted, output: Path) -> dict[str, object]:
     recording = outcome.recording
     return {
         "output": str(output),
+        "mission": recording.name,
         "name": recording.name,
         "reports": outcome.events,
         "comparisons": outcome.comparisons,

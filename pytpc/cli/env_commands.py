@@ -11,10 +11,11 @@ import click
 from pytpc.base.errors import InputError, WorkspaceError
 from pytpc.base.paths import MERGED_FILE, OWN_FOLDER
 from pytpc.base.shell_words import SHELLS, EnvChange
-from pytpc.build.build import installed, workspace_env
+from pytpc.build.nodes_env import nodes_env, with_devel_space, without_devel_space
 from pytpc.cli.arguments import JSON, PATH
 from pytpc.cli.console import warn
 from pytpc.ros.node_start import has_python, with_python, without_python
+from pytpc.workspace.colcon import Bases
 
 
 @click.command("env")
@@ -30,11 +31,15 @@ from pytpc.ros.node_start import has_python, with_python, without_python
 )
 @JSON
 def env_command(*, source: Path | None, off: bool, setup: bool, shell: str, as_json: bool) -> None:
-    """Print shell commands; Python nodes started from this shell will report.
+    """Print shell commands; nodes started from this shell are those of the build, and report.
 
     \b
     eval "$(pytpc env WORKSPACE)"; roslaunch ...      bash, zsh
     pytpc env WORKSPACE --shell fish | source         fish
+
+    Source the workspace's setup.bash before, or give --setup. After `pytpc build`, packages are
+    their folders in src, as in a devel space: what you edit there is used without a build, and no
+    install() rules are needed. Python nodes report.
 
     SOURCE is a workspace or its static.json. Without SOURCE, static.json in this folder is used, or
     else this folder as a workspace. Any build of the workspace will do; nothing is rebuilt.
@@ -42,7 +47,7 @@ def env_command(*, source: Path | None, off: bool, setup: bool, shell: str, as_j
     if off and setup:
         raise click.UsageError("--off cannot be used with --setup: it does not undo setup.bash")
     before = dict(os.environ)
-    after = without_python(before) if off else _on(source, before, setup=setup)
+    after = without_devel_space(without_python(before)) if off else _on(source, before, setup=setup)
     change = EnvChange.between(before, after)
     click.echo(change.json() if as_json else change.text(shell), nl=False)
 
@@ -51,11 +56,13 @@ def _on(source: Path | None, before: dict[str, str], *, setup: bool) -> dict[str
     static = static_file(source)
     after = before
     if setup:
-        after = {**before, **workspace_env(installed(source or Path()), before)}
-    if not has_python(static):
+        after = {**before, **nodes_env(source or Path(), before)}
+    after = with_devel_space(after, Bases(static.parent).devel)
+    if has_python(static):
+        return with_python(after, static)
+    if after == before:
         warn(f"{static}: no comparisons in Python, so there is nothing to set")
-        return after
-    return with_python(after, static)
+    return after
 
 
 def static_file(source: Path | None) -> Path:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import json
-import os
+from contextlib import closing
 from dataclasses import asdict
+from pathlib import Path
 
 import click
 from rich.table import Table
@@ -12,11 +12,13 @@ from rich.table import Table
 from pytpc.base.errors import RunError
 from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import JSON
-from pytpc.cli.console import console, progress, table_of, warn
+from pytpc.cli.console import console, print_json, progress, table_of, warn
+from pytpc.cli.lines import say
+from pytpc.cli.running_graph import RUNNING, use_graph
 from pytpc.python_runtime.config import POLICIES, SINKS
+from pytpc.ros.graphs import nodes_at
+from pytpc.ros.node_status import NodeStatus, SettableNodes, Value, chosen
 from pytpc.ros.ros1 import relay
-from pytpc.ros.ros1.instrumented_nodes import InstrumentedNodes, NodeStatus, Value, chosen
-from pytpc.ros.ros1.master import uri_of
 
 _COUNT = click.IntRange(min=0, max=(1 << 31) - 1)
 
@@ -41,29 +43,30 @@ _COUNT = click.IntRange(min=0, max=(1 << 31) - 1)
     "--process-cap", type=_COUNT, help="Most reports per second of one process; 0: no limit."
 )
 @click.option("--clear", is_flag=True, help="Forget earlier settings first.")
+@RUNNING
 @JSON
-def sink_command(*, nodes: tuple[str, ...], clear: bool, as_json: bool, **options: Value) -> None:
+def sink_command(
+    *,
+    nodes: tuple[str, ...],
+    clear: bool,
+    running_folder: Path | None,
+    as_json: bool,
+    **options: Value,
+) -> None:
     """Show or change what instrumented NODEs report, and where to, while they run.
 
     Without a NODE, it applies to all running nodes and to those started later. Settings are stored
     as ROS parameters (NODE/tpc/sink, or /tpc/sink for all), so they last until the master ends. The
     setting of a node overrides the one for all. Where files go and how large they grow is decided
-    by the environment of the node alone (TPC_FOLDER, TPC_FILE_LIMIT, TPC_FILE_RESERVE).
+    by the environment of the node alone (TPC_FOLDER, TPC_FILE_LIMIT, TPC_FILE_RESERVE). On ROS 2,
+    settings are the parameters of the hidden node NODE/_tpc: they last until NODE ends, and without
+    a NODE they apply to those that run.
     """
     settings = {name: value for name, value in options.items() if value is not None}
-    graph = InstrumentedNodes(uri_of(os.environ))
-    named = chosen(graph.names(), nodes)
-    for node in named if nodes else [None]:
-        if clear:
-            graph.clear(node)
-        graph.set(node, settings)
-    found = []
-    with progress("asking the nodes") as advance:
-        for node in named:
-            found.append(graph.reload(node))
-            advance(len(found), len(named))
+    with closing(nodes_at(use_graph(running_folder).master)) as graph:
+        found = _settled(graph, nodes, settings, clear=clear)
     if as_json:
-        click.echo(json.dumps([asdict(status) for status in found], indent=1))
+        print_json([asdict(status) for status in found])
     else:
         console().print(_table(found), highlight=False)
     failed = [status for status in found if not status.success]
@@ -71,6 +74,23 @@ def sink_command(*, nodes: tuple[str, ...], clear: bool, as_json: bool, **option
         warn(f"{status.node}: {plain(status.message)}")
     if failed:
         raise RunError(f"{many(len(failed), 'node')} did not accept the settings")
+
+
+def _settled(
+    graph: SettableNodes, nodes: tuple[str, ...], settings: dict[str, Value], *, clear: bool
+) -> list[NodeStatus]:
+    """Set the nodes, and ask them."""
+    named = chosen(graph.names(), nodes)
+    for node in named if nodes else [None]:
+        if clear:
+            graph.clear(node)
+        graph.set(node, settings)
+    found = []
+    with progress("asking the nodes") as advance:
+        for status in graph.reload_all(named):
+            found.append(status)
+            advance(len(found), len(named))
+    return found
 
 
 @click.command("relay", context_settings={"ignore_unknown_options": True})
@@ -81,7 +101,8 @@ def relay_command(*, ros_arguments: tuple[str, ...]) -> None:
     Each report becomes one message TIME,KEY,RESULT,cmp:C,thresh:T,res:R. In a launch file:
     <node pkg="rosout" type="rosout" name="tpc_relay" launch-prefix="pytpc relay"/>.
     """
-    relay.run(ros_arguments, lambda text: click.echo(f"pytpc relay: {plain(text)}", err=True))
+    use_graph()
+    relay.run(ros_arguments, lambda text: say(f"pytpc relay: {plain(text)}"))
 
 
 def _table(found: list[NodeStatus]) -> Table:

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import asdict
 from pathlib import Path
 
 import click
-from rich.console import Console
 from rich.text import Text
 
 from pytpc.base.checked_json import check_rules
 from pytpc.base.paths import cmake_file, prefix
 from pytpc.base.wording import many
 from pytpc.cli.arguments import CONSTANTS, JSON, PATH, RULES
-from pytpc.cli.console import console, print_json, table_of
+from pytpc.cli.console import console, print_json, table_of, waiting
+from pytpc.cli.lines import progress_console
+from pytpc.ros.ros2.graph_check import check_ros2_graph
 from pytpc.workspace.doctor.finding import Finding, Severity, by_severity
 from pytpc.workspace.doctor.machine import check_machine, look_at_machine
 from pytpc.workspace.doctor.workspace import (
@@ -59,11 +61,14 @@ def toolchain_command(
 def doctor_command(ctx: click.Context, *, workspace: Path | None, as_json: bool) -> None:
     """Check this machine and WORKSPACE, and print the command that fixes each problem.
 
-    The exit status is 1 if a problem keeps a build from working. Nothing is changed.
+    In a shell that names ROS 2, it also says whether its graph is reached. The exit status is 1 if
+    a problem keeps a build from working. Nothing is changed.
     """
-    with Console(stderr=True).status("checking"):
+    with waiting(progress_console(), "checking"):
         seen = None if workspace is None else look_at_workspace(workspace)
-        findings = check_machine(look_at_machine(workspace or Path()))
+        for_ros1 = seen is None or not seen.is_for_ros2_alone
+        findings = check_machine(look_at_machine(workspace or Path()), for_ros1=for_ros1)
+        findings += check_ros2_graph(os.environ)
         if workspace is not None and seen is not None:
             findings += check_workspace(seen, look_at_known(workspace))
     findings = by_severity(findings)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,17 +14,20 @@ import click
 from rich.table import Table
 from rich.text import Text
 
+from pytpc.api.comparing import diff, diff_running
 from pytpc.base.errors import InputError, TpcError
 from pytpc.base.wording import many, plain
-from pytpc.cli.arguments import JSON, PATH, as_object
-from pytpc.cli.console import console, print_json, warn
-from pytpc.cli.options import recording_of
+from pytpc.cli.arguments import JSON, PATH, REFERENCE, as_object
+from pytpc.cli.console import console, print_json, tell_person, warn
+from pytpc.cli.lines import say
+from pytpc.cli.options import MARKS, recording_of
+from pytpc.cli.running_graph import RUNNING, UsedGraph, use_graph
 from pytpc.present.as_json import mark_json
 from pytpc.present.marking_terminal import (
+    MARKS_SHOWN,
     MarkedMission,
-    Paint,
     RecordedMission,
-    paint_marks,
+    Showing,
     run_marking,
 )
 from pytpc.recording.marking_session import MarkChange, Session
@@ -32,17 +36,19 @@ from pytpc.recording.marks import (
     Mark,
     MarkType,
     joined,
-    marks_beside,
     marks_text,
-    read_marks,
+    short_note,
 )
-from pytpc.recording.marks_file import MarksFile
-from pytpc.recording.mission import Recording
-from pytpc.ros.ros1.marking import GraphMarks
-from pytpc.ros.ros1.master import uri_of
+from pytpc.recording.marks_file import END_PATIENCE_S, MarksFile
+from pytpc.recording.marks_home import MarksHome, marks_home
+from pytpc.recording.mission import Recording, is_converted
+from pytpc.ros.graphs import marks_at
+from pytpc.static.static_info import StaticInfo
 
 _NAMESPACE = re.compile(r"[A-Za-z]\w*(/[A-Za-z]\w*)*", re.ASCII)
 """A namespace as ROS allows it."""
+
+_DIFFERENCES = 12
 
 OBSERVER = click.option(
     "--observer",
@@ -56,24 +62,82 @@ OBSERVER = click.option(
 @click.argument("bag", type=PATH, required=False)
 @OBSERVER
 @click.option(
-    "-o", "--output", type=PATH, help="Write the marks to this CSV file. [default: BAG.marks.csv]"
+    "-o",
+    "--output",
+    type=PATH,
+    help="Write the marks to this CSV file. [default: where they are read with BAG, or with the"
+    " recording that runs]",
 )
-def mark_command(*, bag: Path | None, observer: str, output: Path | None) -> None:
+@RUNNING
+@REFERENCE
+def mark_command(
+    *,
+    bag: Path | None,
+    observer: str,
+    output: Path | None,
+    running_folder: Path | None,
+    references: tuple[Path, ...],
+) -> None:
     """Mark errors of the robot by pressing a key when you see one.
 
-    On the live graph at ROS_MASTER_URI the marks are published, too; a bag replayed with `rosbag
-    play --clock` counts as live. With BAG, a clock runs through the recording instead.
+    A recording of `record` that runs on this machine is found by itself, and gets the marks.
+    Otherwise they are published on the graph at ROS_MASTER_URI, or that of ROS 2 in ROS_DOMAIN_ID;
+    a bag replayed with `rosbag play --clock` counts as live. With BAG, a clock runs through the
+    recording instead.
     """
     check_observer(observer)
-    path = marks_path(bag, observer, output)
-    if bag is None:
-        mission: MarkedMission = GraphMarks(uri_of(os.environ), observer)
+    graph = graph_to_mark(bag, running_folder)
+    target = marks_target(bag, observer, output, graph)
+    if graph is not None:
+        mission: MarkedMission = marks_at(graph.master, observer)
     else:
+        assert bag is not None
         recording = recording_of(bag)
         mission = recorded(recording, bag)
         for note in recording.notes:
             warn(plain(note))
-    mark_in_terminal(mission, observer, path)
+    for line in _differing(bag, graph, references):
+        say(plain(line))
+    mark_in_terminal(mission, observer, target)
+    tell_where(graph)
+
+
+def _differing(bag: Path | None, graph: UsedGraph | None, references: Sequence[Path]) -> list[str]:
+    """A line for each parameter that differs from the good runs."""
+    if not references:
+        return []
+    if graph is not None:
+        found = diff_running(references, graph.master)
+    else:
+        assert bag is not None
+        found = diff(references, bag, StaticInfo.of([]))
+    if not (found.found or found.is_complete):
+        # Without the static information nothing else could be compared.
+        return list(found.notes)
+    shown = [f"  {one.change}" for one in found.found[:_DIFFERENCES]]
+    if len(found.found) > _DIFFERENCES:
+        shown.append(f"  and {len(found.found) - _DIFFERENCES:,} more")
+    return [found.title, *shown, *found.notes]
+
+
+def graph_to_mark(recording: Path | None, running_folder: Path | None) -> UsedGraph | None:
+    """The graph whose mission is marked; None for a recording that has ended.
+
+    Raises:
+        UsageError: both are given.
+        RunError: several recordings run, and none is named.
+    """
+    if recording is None:
+        return use_graph(running_folder)
+    if running_folder is not None:
+        raise click.UsageError("--recording is for a recording that runs")
+    return None
+
+
+def tell_where(graph: UsedGraph | None) -> None:
+    """Say that the marks are in the recording that runs."""
+    if graph is not None and graph.recording is not None:
+        click.echo(f"they are read with the recording {plain(graph.recording.folder)}")
 
 
 def check_observer(observer: str) -> None:
@@ -86,12 +150,53 @@ def check_observer(observer: str) -> None:
         raise click.BadParameter(f"{observer!r} is not a ROS namespace", param_hint="--observer")
 
 
-def marks_path(bag: Path | None, observer: str, output: Path | None) -> Path:
-    """The file for the marks: the user's choice, one beside the recording, or a new one here."""
-    if output is not None or bag is not None:
-        return output or marks_beside(bag or Path())
+@dataclass(frozen=True)
+class MarksTarget:
+    """Where a session on a recording, or on a graph (None), writes its marks."""
+
+    home: MarksHome
+    shown: Path
+    recording: Path | None
+
+    def how_to_read(self, *, is_heard: bool) -> str:
+        """What to tell about marks that no command reads by itself; else nothing.
+
+        ``is_heard``: whether somebody on the graph got all of them.
+        """
+        if self.recording is not None and marks_home(self.recording).has(self.home.file):
+            return ""
+        named = "RECORDING" if self.recording is None else plain(str(self.recording))
+        how = f"pytpc rank {named} --marks {plain(str(self.shown))}"
+        if self.recording is None and not is_heard:
+            return f"no recorder on this graph got all of them; to add them to a recording: {how}"
+        if self.recording is None:
+            return f"a recording of this graph has them; to add them to another one: {how}"
+        return f"to rank by them: {how}"
+
+
+def marks_target(
+    bag: Path | None, observer: str, output: Path | None, graph: UsedGraph | None = None
+) -> MarksTarget:
+    """The user's choice of a file, or where the marks of a recording are, or a new file here."""
+    recording = bag
+    if graph is not None and graph.recording is not None:
+        recording = Path(graph.recording.folder)
+    if recording is not None and output is None:
+        home = marks_home(recording)
+        return MarksTarget(home, _shortest(home.file), recording)
+    path = output or _new_file(observer)
+    return MarksTarget(MarksHome(path.absolute()), path, recording)
+
+
+def _new_file(observer: str) -> Path:
     who = f"{observer.replace('/', '-')}-" if observer else ""
     return Path(time.strftime(f"marks-{who}%Y%m%d-%H%M%S.csv"))
+
+
+def _shortest(path: Path) -> Path:
+    """The path as seen from here, if it is in or below this folder."""
+    here = Path(os.path.realpath("."))
+    return path.relative_to(here) if path.is_relative_to(here) else path
 
 
 def recorded(recording: Recording, source: Path, begin_ns: int | None = None) -> RecordedMission:
@@ -109,10 +214,8 @@ def recorded(recording: Recording, source: Path, begin_ns: int | None = None) ->
 def mark_in_terminal(
     mission: MarkedMission,
     observer: str,
-    path: Path,
-    *,
-    paint: Paint = paint_marks,
-    full: bool = False,
+    target: MarksTarget,
+    how: Showing = MARKS_SHOWN,
 ) -> None:
     """Mark until the observer ends the session, and say where the marks are; see `run_marking`.
 
@@ -120,14 +223,18 @@ def mark_in_terminal(
         TpcError: the file cannot be used, or there is no terminal.
     """
     try:
-        file = MarksFile(path.absolute())
+        file = MarksFile(target.home)
     except TpcError:
         mission.close()
         raise
     ours = tuple(mark for mark in file.before if mark.observer == observer)
-    session = run_marking(Session(observer, ours), mission, file, paint=paint, full=full)
-    warn_of_nothing = "" if path.exists() else " (no file was written)"
-    click.echo(f"{many(len(session.marks), 'mark')}: {plain(str(path))}{warn_of_nothing}")
+    session = run_marking(Session(observer, ours), mission, file, how)
+    if not (session.marks or ours or file.path.exists()):
+        click.echo("nothing was marked")
+        return
+    click.echo(f"{many(len(session.marks), 'mark')}: {plain(str(target.shown))}")
+    if session.marks and (how_to_read := target.how_to_read(is_heard=not mission.unheard())):
+        click.echo(how_to_read)
 
 
 @dataclass(frozen=True)
@@ -138,6 +245,7 @@ class _MarksArguments:
     observer: str
     remove: int | None
     as_csv: bool
+    marks_files: tuple[Path, ...]
     as_json: bool
 
 
@@ -157,36 +265,42 @@ class _MarksArguments:
     metavar="N",
     help="Remove the mark with this number in the list.",
 )
-@click.option(
-    "--csv", "as_csv", is_flag=True, help="Print CSV, in the form of RECORDING.marks.csv."
-)
+@click.option("--csv", "as_csv", is_flag=True, help="Print CSV, in the form of the file of marks.")
+@MARKS
 @JSON
 @as_object(_MarksArguments)
 def marks_command(given: _MarksArguments) -> None:
     """List the marks of a RECORDING, or add and remove some.
 
-    Added marks are written to RECORDING.marks.csv beside it, and only those can be removed. The
-    recording itself is never changed.
+    Added marks are written to marks.csv in the folder of the mission, or to RECORDING.marks.csv
+    beside a single file. Only marks in such files can be removed: the recording itself is never
+    changed. A copy that `convert` made has marks of its own: convert again to have later ones.
     """
     recording, add, remove = given.recording, given.add, given.remove
     if add is not None and remove is not None:
         raise click.UsageError("give --add or --remove, not both")
     if add is None and (given.note or given.observer):
         raise click.UsageError("--note and --observer need --add")
-    found = recording_of(recording)
+    found = recording_of(recording, given.marks_files)
     marks = found.marks
     if add is not None:
         mark = _mark_to_add(found, *add, given.observer, given.note)
-        _change(recording, MarkChange(None, mark))
+        _change(MarksFile(marks_home(recording)), MarkChange(None, mark))
         marks = joined([*marks, mark])
+        if not is_converted(recording):
+            tell_person(
+                "a copy that `pytpc convert` made before does not have this mark: add it to the"
+                " copy, too, or convert again"
+            )
     if remove is not None:
-        gone = _mark_to_remove(recording, marks, remove)
-        _change(recording, MarkChange(gone, None))
+        file = MarksFile(marks_home(recording))
+        gone = _mark_to_remove(file, recording, marks, remove)
+        _change(file, MarkChange(gone, None))
         marks = tuple(mark for mark in marks if mark != gone)
     if given.as_json:
         print_json([mark_json(mark, found.start_ns) for mark in marks])
     elif given.as_csv:
-        click.echo(marks_text(marks), nl=False)
+        click.echo(marks_text(marks).encode("utf-8", "backslashreplace"), nl=False)
     elif marks:
         console().print(_marks_table(found, marks), highlight=False)
     else:
@@ -205,10 +319,10 @@ def _mark_to_add(found: Recording, at_s: float, kind: str, observer: str, note: 
             param_hint="--add",
         )
     typed: MarkType | None = next((known for known in MARK_TYPES if known == kind), None)
-    return Mark(found.start_ns + round(at_s * 1e9), typed, observer, note)
+    return Mark(found.start_ns + round(at_s * 1e9), typed, observer, short_note(note))
 
 
-def _mark_to_remove(source: Path, marks: Sequence[Mark], number: int) -> Mark:
+def _mark_to_remove(file: MarksFile, source: Path, marks: Sequence[Mark], number: int) -> Mark:
     """The mark with that number.
 
     Raises:
@@ -216,26 +330,27 @@ def _mark_to_remove(source: Path, marks: Sequence[Mark], number: int) -> Mark:
         InputError: it is in the recording itself.
     """
     if number > len(marks):
-        raise click.BadParameter(f"there are {many(len(marks), 'mark')}", param_hint="--remove")
+        there = f"there are {many(len(marks), 'mark')}"
+        see = f"`pytpc marks {shlex.quote(str(source))}` lists them"
+        raise click.BadParameter(f"{there}; {see}", param_hint="--remove")
     gone = marks[number - 1]
-    beside = marks_beside(source)
-    if gone not in (read_marks(beside) if beside.exists() else ()):
+    if not file.holds(gone):
         raise InputError(
-            f"mark {number} is in the recording itself, not in {beside.name}: it cannot be removed",
+            f"mark {number} is in the recording itself, not in a file of marks: it cannot be"
+            " removed",
             source,
         )
     return gone
 
 
-def _change(source: Path, change: MarkChange) -> None:
-    """Apply a change to the file of marks beside a recording.
+def _change(file: MarksFile, change: MarkChange) -> None:
+    """Apply a change to the files of marks of a recording.
 
     Raises:
-        TpcError: it cannot be read or written.
+        TpcError: one cannot be read or written.
     """
-    file = MarksFile(marks_beside(source).absolute())
     file.take(change)
-    fault = file.flush()
+    fault = file.flush(END_PATIENCE_S)
     if fault:
         raise TpcError(fault, file.path)
 
@@ -253,7 +368,7 @@ def _marks_table(found: Recording, marks: Sequence[Mark]) -> Table:
             f"{seconds:.1f}",
             mark.type or "none",
             Text(plain(mark.observer)),
-            Text(plain(mark.note)),
+            Text(plain(short_note(mark.note))),
         )
     return table
 

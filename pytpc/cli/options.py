@@ -3,18 +3,26 @@
 from __future__ import annotations
 
 import math
+import os
+import shlex
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import click
 
-from pytpc.api.missions import check_reports, read_named
-from pytpc.base.wording import plain
+from pytpc.api.comparing import RecordedRun
+from pytpc.api.diagnosing import AskedMission
+from pytpc.api.missions import check_reports, read_named, same_reports
+from pytpc.base.errors import InputError
+from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import PATH, Command
 from pytpc.cli.console import progress, warn
-from pytpc.diagnosis.question import WINDOW_S, Types
+from pytpc.cli.lines import say
+from pytpc.diagnosis.question import WINDOW_S, Question, Types
 from pytpc.recording.faults import faults_of
 from pytpc.recording.mission import Recording
+from pytpc.ros.earlier_runs import last_unmarked_run
 from pytpc.static.static_info import StaticInfo
 
 
@@ -22,7 +30,7 @@ from pytpc.static.static_info import StaticInfo
 class AskArguments:
     """The options that all commands about recordings have."""
 
-    static_source: Path
+    static_source: Path | None
     types: Types
     window_s: float
     top: int
@@ -48,9 +56,9 @@ STATIC = click.option(
     "--static",
     "static_source",
     type=PATH,
-    required=True,
     metavar="FILE_OR_FOLDER",
-    help="Static information: a static.json, a build base or a built workspace.",
+    help="Static information: a static.json, a build base or a built workspace. [default: that of"
+    " the recording, else the one found in this folder or a sourced workspace]",
 )
 TOP = click.option(
     "--top",
@@ -70,7 +78,18 @@ WINDOW = click.option(
     help="Length of the window before a mark in which type II looks.",
 )
 
+MARKS = click.option(
+    "--marks",
+    "marks_files",
+    type=PATH,
+    multiple=True,
+    metavar="FILE",
+    help="CSV file with more marks of the recording, as `mark -o` writes it; may be repeated.",
+)
+
 _UNTYPED = "pytpc.untyped"
+_OFFERED = "pytpc.offered"
+_GOOD = "pytpc.good"
 
 
 def _note_untyped(ctx: click.Context, _: click.Parameter, value: bool) -> None:
@@ -105,14 +124,25 @@ def TYPES(command: Command) -> Command:
     return _BELIEVED(_OLDER(command))
 
 
-def recording_of(source: Path) -> Recording:
-    """Read a recording and show the progress.
+def recording_of(source: Path, marks: Sequence[Path] = ()) -> Recording:
+    """Read a recording, with these files of marks, and show the progress.
 
     Raises:
         InputError: it cannot be read.
     """
     with progress(f"reading {source.name}") as advance:
-        return read_named(source, advance)
+        return read_named(source, advance, marks)
+
+
+def marks_of_one(files: tuple[Path, ...], recordings: Sequence[Path]) -> tuple[Path, ...]:
+    """The files of ``--marks``.
+
+    Raises:
+        UsageError: there are several recordings.
+    """
+    if files and len(recordings) > 1:
+        raise click.UsageError("--marks needs a single RECORDING")
+    return files
 
 
 def check(recording: Recording, static: StaticInfo, source: Path) -> None:
@@ -125,34 +155,77 @@ def check(recording: Recording, static: StaticInfo, source: Path) -> None:
     warn_about(recording, static)
 
 
-def checked_recording(source: Path, static: StaticInfo) -> Recording:
-    """Read a recording of this build, and warn of its faults.
-
-    Raises:
-        InputError: it cannot be read, is of another build, or has no report.
-    """
-    found = recording_of(source)
-    check(found, static, source)
-    return found
-
-
 def warn_about(recording: Recording, static: StaticInfo | None = None) -> None:
     """Warn of each fault of a recording, in a line."""
     for fault in faults_of(recording, static):
         warn(f"{plain(recording.name)}: {plain(fault)}")
 
 
-def reference_of(source: Path | None, static: StaticInfo) -> Recording | None:
-    """Read the good run that ``--reference`` names, if there is one.
+def offer_good_run(mission: Path) -> None:
+    """Name the last recording that was launched alike and that nobody marked; once."""
+    offered: set[Path] = click.get_current_context().meta.setdefault(_OFFERED, set())
+    found = last_unmarked_run(mission)
+    if found is not None and found not in offered:
+        offered.add(found)
+        short = min(str(found), os.path.relpath(found), key=len)
+        say(
+            f"pytpc: note: {plain(short)} is of the same launch file, and nobody marked it. If it"
+            f" was a good run: --reference {shlex.quote(plain(short))}",
+        )
+
+
+def good_runs(sources: Sequence[Path], static: StaticInfo) -> list[RecordedRun]:
+    """Read the good runs that ``--reference`` names, each once for all missions.
+
+    Of each that has marks a line warns.
 
     Raises:
-        InputError: it cannot be read, or is of another build.
+        InputError: one cannot be read, or is of another build.
     """
-    if source is None:
-        return None
-    found = recording_of(source)
-    check_reports(found, static, source)
-    return found
+    read: dict[Path, RecordedRun] = click.get_current_context().meta.setdefault(_GOOD, {})
+    for source in sources:
+        if source not in read:
+            read[source] = RecordedRun(recording_of(source), source)
+            _warn_of_marks(source, read[source].recording)
+        check_reports(read[source].recording, static, source)
+    return [read[source] for source in sources]
+
+
+def _warn_of_marks(source: Path, recording: Recording) -> None:
+    if recording.marks:
+        warn(
+            f"{plain(str(source))}: has {many(len(recording.marks), 'mark')}, so somebody saw"
+            " errors in this good run; give one that nobody marked, if there is one"
+        )
+
+
+def asked_mission(
+    run: RecordedRun, static: StaticInfo, question: Question, good: Sequence[RecordedRun]
+) -> AskedMission:
+    """Put a question about a mission of a file or folder, and warn of the recording's faults.
+
+    Raises:
+        InputError: a recording is of another build, has no report, or is its own good run.
+    """
+    assert run.source is not None
+    check(run.recording, static, run.source)
+    refuse_itself(good, run.recording)
+    return AskedMission.of(run, static, question, good)
+
+
+def refuse_itself(good: Sequence[RecordedRun], mission: Recording) -> None:
+    """Refuse the mission itself as its good run, whatever the path, the format or the copy.
+
+    Raises:
+        InputError: both have the same reports.
+    """
+    for run in good:
+        if same_reports(run.recording, mission):
+            raise InputError(
+                f"has the same reports as the mission {plain(mission.name)} itself; give a"
+                " recording of a good run",
+                run.source,
+            )
 
 
 def warn_plainly(line: str) -> None:

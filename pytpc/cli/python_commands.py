@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -10,7 +9,7 @@ import click
 
 from pytpc.api.building import analyse
 from pytpc.cli.arguments import CONSTANTS, JSON, PATH, STATIC_OUTPUT, as_object
-from pytpc.cli.console import found_text, progress, show_units, tell_left_out
+from pytpc.cli.console import found_text, print_json, progress, show_units, tell_left_out
 from pytpc.python_analysis.budget import SECONDS
 from pytpc.python_analysis.rules_file import load_rules
 
@@ -65,7 +64,7 @@ def analyse_command(given: _AnalyseArguments) -> None:
         static = analyse(given.sources, rules, max_seconds=given.max_seconds, on_progress=advance)
     static.save(given.output)
     if given.as_json:
-        click.echo(json.dumps(static.to_json(), ensure_ascii=False))
+        print_json(static.to_json(), indent=None)
         tell_left_out(static)
         return
     show_units(static)

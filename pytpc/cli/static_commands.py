@@ -35,7 +35,13 @@ from pytpc.cli.console import (
 )
 from pytpc.cli.explain_commands import print_why_not
 from pytpc.cli.selecting import SELECTING, place_of
-from pytpc.cli.sources import SOURCES, SOURCES_AND_QUESTION, static_of, tell_dropped
+from pytpc.cli.sources import (
+    SOURCES,
+    SOURCES_AND_QUESTION,
+    static_of,
+    tell_dropped,
+    warn_of_changed,
+)
 from pytpc.conditions.cpp_conditions import lines_of
 from pytpc.conditions.lookup import look_up_conditions
 from pytpc.conditions.sarif import sarif_log
@@ -94,6 +100,7 @@ def show_command(sources: tuple[Path, ...], question: str, as_json: bool) -> Non
     source as it is compiled, which takes some seconds per file the first time.
     """
     static = static_of(sources)
+    warn_of_changed(static)
     explanation = look_up(static, question)
     keys = {each.comparison.key for each in explanation.comparisons}
     tpcs = [tpc for tpc in static.tpcs if not keys.isdisjoint(each.key for each in tpc.keys)]

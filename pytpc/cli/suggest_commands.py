@@ -2,34 +2,39 @@
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import click
 
-from pytpc.api.diagnosing import Rankings
+from pytpc.api.comparing import RecordedRun
+from pytpc.api.diagnosing import AskedMission
 from pytpc.api.missions import find_declared, with_names_of
 from pytpc.api.suggesting import suggest_together, what_if_by_type
 from pytpc.base.errors import InputError
 from pytpc.base.wording import Number, plain, show
-from pytpc.cli.arguments import JSON, PATH, as_object
+from pytpc.cli.arguments import JSON, PATH, REFERENCE, as_object
 from pytpc.cli.completion_commands import offer_parameters
 from pytpc.cli.console import console, print_json, progress
 from pytpc.cli.options import (
+    MARKS,
     STATIC,
     TOP,
     TYPES,
     WINDOW,
     AskArguments,
     check,
+    good_runs,
+    offer_good_run,
     recording_of,
-    reference_of,
+    refuse_itself,
     warn_plainly,
 )
-from pytpc.cli.sources import static_of
+from pytpc.cli.sources import static_for
 from pytpc.diagnosis.question import Question
-from pytpc.present.as_json import blame_json, fields_json, group_json
-from pytpc.present.ranking_tables import group_text, together_text
+from pytpc.present.as_json import diagnosis_json, fields_json, group_json
+from pytpc.present.ranking_tables import group_text, print_differences, print_suggestions
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
 
@@ -40,9 +45,11 @@ _LONGEST = 40
 @dataclass(frozen=True)
 class _SuggestArguments(AskArguments):
     recording: Path
+    marks_files: tuple[Path, ...]
     parameter: str | None
     value_text: str | None
-    reference: Path | None
+    each: bool
+    references: tuple[Path, ...]
     flown: tuple[float, ...]
 
     def __post_init__(self) -> None:
@@ -56,18 +63,15 @@ class _SuggestArguments(AskArguments):
 @click.argument("recording", type=PATH)
 @click.argument("parameter", required=False, shell_complete=offer_parameters)
 @STATIC
+@click.option("--each", is_flag=True, help="Show the suggestions for groups of marks, too.")
+@MARKS
 @click.option(
     "--value",
     "value_text",
     metavar="V",
     help="Show what this value of PARAMETER would have changed, instead of suggesting one.",
 )
-@click.option(
-    "--reference",
-    type=PATH,
-    metavar="RECORDING",
-    help="A good run of the same build; its value is suggested if it would help.",
-)
+@REFERENCE
 @click.option(
     "--flown",
     type=float,
@@ -83,17 +87,19 @@ class _SuggestArguments(AskArguments):
 def suggest_command(given: _SuggestArguments) -> None:
     """Suggest a value to try for the suspects in RECORDING, and show what it would have changed.
 
-    The answer of all marks together comes first if it differs from the answers at the marks. With
-    PARAMETER, only that parameter is shown, wherever it stands in the ranking. Write a negative
-    number as --value=-1.
+    The suspects are those of `rank`. With PARAMETER, only that parameter is shown, wherever it
+    stands in the ranking, and what it would do at each group of marks that say the same. Write a
+    negative number as --value=-1.
     """
     value = None if given.value_text is None else _number(given.value_text)
-    static = static_of([given.static_source])
-    found = recording_of(given.recording)
+    found = recording_of(given.recording, given.marks_files)
     if not found.marks and value is None:
         raise InputError(
-            "no marks: add some with `pytpc mark`, or ask for a --value", given.recording
+            f"no marks: add some with `pytpc mark {shlex.quote(str(given.recording))}`, or ask for"
+            " a --value",
+            given.recording,
         )
+    static = static_for(given.static_source, given.recording, found)
     check(found, static, given.recording)
     if given.types == "ignore":
         found = replace(found, marks=tuple(replace(mark, type=None) for mark in found.marks))
@@ -135,26 +141,31 @@ def _show_suggestions(recording: Recording, static: StaticInfo, given: _SuggestA
         given.types,
         given.window_s,
         given.top,
-        reference=reference_of(given.reference, static),
         declared=find_declared(static, given.recording, warn_plainly),
         flown=given.flown,
     )
+    good = good_runs(given.references, static)
+    refuse_itself(good, recording)
+    if not good:
+        offer_good_run(given.recording)
     with progress("replaying the mission") as advance:
         advance(0, len(recording.marks))
-        rankings = Rankings.of(recording, static, question, given.recording)
-        answer = suggest_together(rankings, given.parameter)
+        run = RecordedRun(recording, given.recording)
+        asked = AskedMission.of(run, static, question, good)
+        answer = suggest_together(asked.rankings, given.parameter)
     if given.as_json:
         document = {
             "mission": recording.name,
-            "together": blame_json(answer.together, answer.first),
+            "together": diagnosis_json(answer.together),
             "groups": [group_json(group, recording.start_ns) for group in answer.groups],
         }
         print_json(document)
         return
-    if not answer.is_one_answer:
-        for one in answer.first:
-            part = together_text(answer.together, one, given.parameter)
-            console().print(part, highlight=False)
+    if answer.together.differences is not None:
+        print_differences(console(), answer.together.differences)
+    print_suggestions(console(), answer.together, given.parameter)
+    if not (given.each or given.parameter):
+        return
     for group in answer.groups:
         console().print(group_text(group, recording, given.parameter), highlight=False)
 

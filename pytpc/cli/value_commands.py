@@ -2,25 +2,37 @@
 
 from __future__ import annotations
 
-import json
 import re
+import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import click
 from rich.table import Table
 
 from pytpc.api import values
-from pytpc.api.values import FileChange, Journal, JournalEntry, LiveChange, Origin, Place
-from pytpc.base.wording import plain
+from pytpc.api.values import (
+    FileChange,
+    Journal,
+    JournalEntry,
+    LiveChange,
+    Origin,
+    OutsideError,
+    Place,
+)
+from pytpc.base.wording import listed, plain
 from pytpc.cli.arguments import JSON, PATH, as_object
 from pytpc.cli.completion_commands import offer_parameters
-from pytpc.cli.console import console, progress, table_of, warn
+from pytpc.cli.console import console, print_json, progress, table_of, warn
+from pytpc.cli.lines import say
+from pytpc.cli.running_graph import ROS, use_graph
+from pytpc.ros.ros2.address import is_ros2, words_of
 from pytpc.values.apply import change_as_json, diff_of, shown
 from pytpc.values.origins import as_json, to_json
 
 _LONGEST = 60
+_MOST_NAMED = 8
 _ARGUMENT = re.compile(r"[A-Za-z_]\w*:=.*", re.DOTALL)
 _WORKSPACE = click.option(
     "--workspace",
@@ -38,6 +50,7 @@ class _ApplyArguments:
     live: bool
     add: bool
     force: bool
+    file: Path | None
     workspace: Path | None
     as_json: bool
 
@@ -54,8 +67,8 @@ def origin_command(
 ) -> None:
     """Show where the values of parameters came from.
 
-    TARGET is a mission's folder, its bag, or a launch file. A launch file is read with NAME:=VALUE
-    as roslaunch would read it; nothing is started.
+    TARGET is a mission's folder, its bag, a launch file, or a params file of ROS 2. A launch file
+    is read with NAME:=VALUE as roslaunch or `ros2 launch` would read it; nothing is started.
     """
     names = [word for word in words if _ARGUMENT.fullmatch(word) is None]
     if len(names) > 1:
@@ -64,7 +77,7 @@ def origin_command(
         place = Place(target, _arguments(words), workspace)
         origins = values.origins(place, names[0] if names else None)
     if as_json:
-        click.echo(json.dumps({o.name: as_json_of(o) for o in origins}, indent=1))
+        print_json({o.name: as_json_of(o) for o in origins})
     elif names:
         _show_origin(origins[0])
     else:
@@ -86,22 +99,36 @@ def origin_command(
 @click.option(
     "--live", is_flag=True, help="Set the value on the running robot (with TARGET: there, too)."
 )
-@click.option("--add", is_flag=True, help="Add it to the launch file if no file sets it.")
+@click.option(
+    "--add",
+    is_flag=True,
+    help="Add it to the launch file (of ROS 1) or the params file if no file sets it.",
+)
 @click.option(
     "--force",
     is_flag=True,
-    help="Allow another type, and changes that affect other parameters, too.",
+    help="Allow another type, a value outside of the declared range, a name that nothing sets or"
+    " reads, changes that affect other parameters, too, and changes of a file that is not as it was"
+    " recorded.",
+)
+@click.option(
+    "--file",
+    type=PATH,
+    metavar="FILE",
+    help="Change this file, which a recording names though it is outside of the workspace.",
 )
 @_WORKSPACE
+@ROS
 @JSON
 @as_object(_ApplyArguments)
 def apply_command(given: _ApplyArguments) -> None:
     """Write VALUE into the YAML or launch file that set PARAMETER.
 
-    TARGET is a mission's folder, a launch file or a YAML file. The rest of the file stays the same,
+    TARGET is a mission's folder, a launch file or a YAML file. In a params file of ROS 2, PARAMETER
+    is /NODE/NAME, NODE NAME or NAME, with dots in NAME. The rest of the file stays the same,
     byte for byte. The change is shown, and can be taken back with --undo. With --live the value is
     set on the robot at ROS_MASTER_URI: on its parameter server, and by dynamic_reconfigure if the
-    node supports it.
+    node supports it. On ROS 2 the node that has the parameter is asked, and may refuse.
 
     \b
     pytpc apply mission/ /mission/min_coverage_limit 0.035
@@ -133,9 +160,15 @@ def _set(journal: Journal, given: _ApplyArguments) -> None:
         name = change.parameter
         answer["file"] = _write(change, journal, given)
     if given.live:
-        answer["live"] = _set_live(journal, name, value, given)
+        graph = use_graph().master
+        answer["live"] = _set_live(journal, (name, value), graph, given)
     if given.as_json:
-        click.echo(json.dumps(answer, indent=1))
+        print_json(answer)
+
+
+def is_terminal() -> bool:
+    """Whether somebody can answer a question."""
+    return sys.stdin.isatty()
 
 
 def as_json_of(origin: Origin) -> dict[str, object]:
@@ -149,16 +182,36 @@ def _arguments(words: Sequence[str]) -> dict[str, str]:
     return {name: value for name, separator, value in pairs if separator}
 
 
+def _with_node(words: tuple[str, ...]) -> tuple[str, ...]:
+    """The words, with NODE PARAMETER as one where they mean a params file or a node of ROS 2."""
+    if len(words) < 4 or _ARGUMENT.fullmatch(words[3]) or not values.is_of_ros2(Path(words[0])):
+        return words
+    return (words[0], f"{words[1].rstrip('/')}/{words[2]}", *words[3:])
+
+
 def _plan(given: _ApplyArguments) -> FileChange:
-    target, parameter, value, *args = given.words
+    target, parameter, value, *args = _with_node(given.words)
     for word in args:
         if _ARGUMENT.fullmatch(word) is None:
             raise click.UsageError(f"{word!r} is not NAME:=VALUE")
-    if given.add and values.is_yaml(Path(target)):
-        raise click.UsageError("--add is for launch files and missions")
-    place = Place(Path(target), _arguments(args), given.workspace)
-    with progress(f"reading {place.path.name}"):
-        return values.plan(place, parameter, value, add=given.add, force=given.force)
+    path = Path(target)
+    if given.add and values.is_yaml(path) and path.exists() and not values.is_of_ros2(path):
+        raise click.UsageError("--add is for launch files, missions and params files of ROS 2")
+    place = Place(path, _arguments(args), given.workspace, given.file)
+
+    def planned(place: Place) -> FileChange:
+        with progress(f"reading {place.path.name}"):
+            return values.plan(place, parameter, value, add=given.add, force=given.force)
+
+    try:
+        return planned(place)
+    except OutsideError as error:
+        if given.as_json or not is_terminal():
+            raise
+        where = f"{error.file}:{error.line}" if error.line else str(error.file)
+        say(plain(f"{where} is in no workspace; only the recording names it."))
+        click.confirm("Change this file?", abort=True, err=True)
+        return planned(replace(place, confirmed=error.file))
 
 
 def _write(change: FileChange, journal: Journal, given: _ApplyArguments) -> dict[str, object]:
@@ -174,27 +227,32 @@ def _write(change: FileChange, journal: Journal, given: _ApplyArguments) -> dict
         }
     _show_diff(change)
     place = f"{change.path}:{change.lineno}"
-    what = f"{change.parameter} {shown(change.old)} -> {shown(change.new)}"
+    names = listed(change.parameters, _MOST_NAMED)
+    what = f"{names} {shown(change.old)} -> {shown(change.new)}"
     for note in change.notes:
         warn(plain(note))
     if change.before == change.after:
-        click.echo(plain(f"{place}: {change.parameter} is {shown(change.new)} already"))
+        click.echo(plain(f"{place}: {names} is {shown(change.new)} already"))
     elif entry is None:
         click.echo(plain(f"{place}: {what} (not written: --dry-run)"))
     else:
         click.echo(plain(f"{place}: {what}"))
-        click.echo(f"to take it back: pytpc apply --undo {entry.number}", err=True)
+        say(f"to take it back: pytpc apply --undo {entry.number}")
     return {}
 
 
 def _set_live(
-    journal: Journal, parameter: str, value: str, given: _ApplyArguments
+    journal: Journal, change_to: tuple[str, str], graph: str, given: _ApplyArguments
 ) -> dict[str, object]:
-    done = values.apply_live(parameter, value, journal, dry_run=given.dry_run, force=given.force)
+    done = values.apply_live(
+        change_to, journal, graph=graph, dry_run=given.dry_run, force=given.force
+    )
     change, entry = done.change, done.entry
     told = _told(change, done.holds, done.taken)
     if given.dry_run and change.service:
         told = "the node would take it at once (dynamic_reconfigure)"
+        if is_ros2(change.master):
+            told = "the node would be asked, and may refuse it"
     if given.as_json:
         return {
             "parameter": done.name,
@@ -211,15 +269,20 @@ def _set_live(
         }
     dry = " (not set: --dry-run)" if given.dry_run else ""
     what = f"{done.name} {shown(change.old)} -> {shown(done.holds)}{dry}"
-    click.echo(plain(f"{change.master}: {what}"))
-    click.echo(plain(told), err=True)
+    click.echo(plain(f"{words_of(change.master)}: {what}"))
+    say(plain(told))
     if entry is not None:
-        click.echo(f"to take it back: pytpc apply --undo {entry.number}", err=True)
+        say(f"to take it back: pytpc apply --undo {entry.number}")
     return {}
 
 
 def _told(change: LiveChange, holds: object, taken: bool) -> str:
     """Say whether the node uses the new value already."""
+    if is_ros2(change.master):
+        return (
+            "the node has taken it; it uses it now if it has a callback for that, or reads the"
+            " parameter while it runs"
+        )
     if taken:
         if repr(holds) != repr(change.new):
             return f"the node limited it to {shown(holds)} (dynamic_reconfigure)"
@@ -240,7 +303,7 @@ def _undo(journal: Journal, given: _ApplyArguments) -> None:
     entry, change = values.undo(journal, what, dry_run=given.dry_run, force=given.force)
     if given.as_json:
         answer = {"undone": entry.number, "written": not given.dry_run, **_entry_json(entry)}
-        click.echo(json.dumps(answer, indent=1))
+        print_json(answer)
         return
     if change is not None:
         _show_diff(change)
@@ -251,7 +314,7 @@ def _undo(journal: Journal, given: _ApplyArguments) -> None:
 def _list(journal: Journal, as_json: bool) -> None:
     entries = journal.entries()
     if as_json:
-        click.echo(json.dumps([_entry_json(entry) for entry in entries], indent=1))
+        print_json([_entry_json(entry) for entry in entries])
         return
     if entries:
         rows = [
@@ -261,7 +324,7 @@ def _list(journal: Journal, as_json: bool) -> None:
         headings = ("Change", "Time", "Parameter", "Old", "New", "Where")
         console().print(table_of(headings, rows, right=("Change",)), highlight=False)
     else:
-        click.echo("no changes to take back", err=True)
+        say("no changes to take back")
 
 
 def _entry_json(entry: JournalEntry) -> dict[str, object]:

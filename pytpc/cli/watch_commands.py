@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-import json
-import os
 import sys
 import time
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import click
 from rich.console import Console
 
+from pytpc.api.comparing import RecordedRun, diff_running
+from pytpc.api.diagnosing import AskedMission
+from pytpc.api.live_diagnosis import LiveDiagnosis, asked_of_graph
 from pytpc.api.live_mission import (
     KINDS,
     Feed,
@@ -23,30 +25,40 @@ from pytpc.api.live_mission import (
 )
 from pytpc.base.errors import InputError, RunError
 from pytpc.base.signals import signals_end
-from pytpc.cli.arguments import JSON, PATH, as_object
-from pytpc.cli.console import warn
+from pytpc.base.wording import plain
+from pytpc.cli.arguments import JSON, PATH, REFERENCE, as_object
+from pytpc.cli.console import print_json, warn
 from pytpc.cli.mark_commands import (
     OBSERVER,
     check_observer,
+    graph_to_mark,
     mark_in_terminal,
-    marks_path,
+    marks_target,
     recorded,
+    tell_where,
 )
 from pytpc.cli.options import (
     STATIC,
     TYPES,
     WINDOW,
     AskArguments,
-    checked_recording,
+    check,
+    good_runs,
+    recording_of,
+    refuse_itself,
 )
-from pytpc.cli.sources import static_of
+from pytpc.cli.running_graph import RUNNING, UsedGraph
+from pytpc.cli.sources import known_static_file, static_for
 from pytpc.diagnosis.question import Question
-from pytpc.present.as_json import look_json
-from pytpc.present.marking_terminal import MarkedMission
+from pytpc.diagnosis.results.diagnosis import Diagnosis
+from pytpc.diagnosis.results.differences import RunDifferences
+from pytpc.present.as_json import diagnosis_json, look_json
+from pytpc.present.marking_terminal import MarkedMission, Showing
 from pytpc.present.watch_screen import LAYOUTS, WatchOptions, table
 from pytpc.recording.marking_session import clock_text
-from pytpc.ros.ros1.marking import GraphMarks
-from pytpc.ros.ros1.master import uri_of
+from pytpc.recording.mission import Recording
+from pytpc.ros.graphs import marks_at
+from pytpc.static.static_info import StaticInfo
 
 _ONCE_S = 5.0
 _TURN_S = 0.1
@@ -55,17 +67,21 @@ _TURN_S = 0.1
 @dataclass(frozen=True)
 class _WatchArguments(AskArguments):
     recording: Path | None
+    running_folder: Path | None
     observer: str
     output: Path | None
     once: bool
     seconds: float | None
+    references: tuple[Path, ...]
 
 
 @click.command("watch")
 @click.argument("recording", type=PATH, required=False)
 @STATIC
+@RUNNING
 @OBSERVER
 @click.option("-o", "--output", type=PATH, help="Write the marks to this CSV file, as `mark` does.")
+@REFERENCE
 @WINDOW
 @click.option(
     "--top",
@@ -88,80 +104,151 @@ class _WatchArguments(AskArguments):
 def watch_command(given: _WatchArguments) -> None:
     """Show the suspected parameters while the robot runs, and mark.
 
-    The reports come from the graph at ROS_MASTER_URI; ROS need not be installed on this machine.
-    With RECORDING, a clock runs through the recording instead. The keys are those of `mark`, and
-    the ranking at each mark is kept. Use `rank` afterwards to judge by all marks together. --json
+    A recording of `record` that runs on this machine is found by itself. Otherwise, the reports
+    come from the graph at ROS_MASTER_URI; ROS need not be installed on this machine. With
+    RECORDING, a clock runs through the recording instead. The keys are those of `mark`, and the
+    ranking at each mark is kept. Use `rank` afterwards to judge by all marks together. --json
     prints what --once shows, for programs.
     """
     check_observer(given.observer)
-    static = static_of([given.static_source])
-    if not static.thresholds:
-        raise InputError("it has no comparison with a parameter", given.static_source)
+    graph = graph_to_mark(given.recording, given.running_folder)
+    run = None
+    if given.recording is not None:
+        run = RecordedRun(recording_of(given.recording), given.recording)
+    static = _static(given, graph, run)
     fresh = fresh_watching(static, Question(given.types, given.window_s))
     layout = (None,) if given.types == "ignore" else LAYOUTS[0]
     options = WatchOptions(layout=layout, top=given.top)
+    good = good_runs(given.references, static)
+    if run is not None:
+        refuse_itself(good, run.recording)
     if given.once or given.as_json:
-        _once(given.recording, fresh, options, given.seconds, as_json=given.as_json)
+        _once((graph, run), fresh, options, good, given)
         return
     if not sys.stdin.isatty():
         raise RunError("standard input is not a terminal, so no keys can be read; see --once")
-    path = marks_path(given.recording, given.observer, given.output)
-    mission, feed = _opened(given.recording, given.observer, fresh)
-    watched = WatchedMission(mission, feed, options, believe=given.types != "ignore")
-    mark_in_terminal(watched, given.observer, path, paint=watched.paint, full=True)
+    target = marks_target(given.recording, given.observer, given.output, graph)
+    if graph is not None:
+        mission, feed = opened_graph(graph.master, given.observer, fresh)
+    else:
+        mission, feed = _opened(run, fresh)
+    judged = _judged((graph, run), static, good, given) if good else None
+    believe = given.types != "ignore"
+    watched = WatchedMission(mission, feed, options, believe=believe, judged=judged)
+    mark_in_terminal(watched, given.observer, target, Showing(watched.paint, full=True))
+    tell_where(graph)
 
 
-def _opened(recording: Path | None, observer: str, fresh: Watching) -> tuple[MarkedMission, Feed]:
-    """The mission to mark, and the feed to watch."""
-    if recording is None:
-        master = uri_of(os.environ)
-        return GraphMarks(master, observer, what="watching"), GraphFeed(master, fresh)
-    found = checked_recording(recording, fresh.static_info)
-    return recorded(found, recording), RecordedFeed(found, fresh)
+def _static(given: _WatchArguments, graph: UsedGraph | None, run: RecordedRun | None) -> StaticInfo:
+    """The static information that is given, or that of the recording, running or not.
+
+    Raises:
+        InputError: there is none, or it has no comparison with a parameter.
+    """
+    source = given.static_source or (None if graph is None else graph.static)
+    static = static_for(source, given.recording, None if run is None else run.recording)
+    if not static.thresholds:
+        raise InputError("the static information has no comparison with a parameter", source)
+    if run is not None and given.recording is not None:
+        check(run.recording, static, given.recording)
+    return static
+
+
+def opened_graph(master: str, observer: str, fresh: Watching) -> tuple[MarkedMission, Feed]:
+    """The graph to mark, and its feed to watch."""
+    return marks_at(master, observer, "watching", advertise=False), GraphFeed(master, fresh)
+
+
+def _opened(run: RecordedRun | None, fresh: Watching) -> tuple[MarkedMission, Feed]:
+    """The recording to mark, and its feed to watch."""
+    assert run is not None
+    assert run.source is not None
+    return recorded(run.recording, run.source), RecordedFeed(run.recording, fresh)
+
+
+def _judged(
+    watched_run: tuple[UsedGraph | None, RecordedRun | None],
+    static: StaticInfo,
+    good: Sequence[RecordedRun],
+    given: _WatchArguments,
+) -> LiveDiagnosis:
+    """The diagnosis beside good runs, of the recording or of the robot that runs."""
+    graph, run = watched_run
+    question = Question(given.types, given.window_s)
+    if run is not None:
+
+        def ask(mission: Recording) -> AskedMission:
+            return AskedMission.of(replace(run, recording=mission), static, question, good)
+
+        return LiveDiagnosis(ask, run.recording)
+    assert graph is not None
+    file = known_static_file(given.static_source or graph.static)
+    return LiveDiagnosis(asked_of_graph(graph.master, static, file, question, good))
 
 
 def _once(
-    recording: Path | None,
+    watched_run: tuple[UsedGraph | None, RecordedRun | None],
     fresh: Watching,
     options: WatchOptions,
-    seconds: float | None,
-    *,
-    as_json: bool,
+    good: Sequence[RecordedRun],
+    given: _WatchArguments,
 ) -> None:
-    """Listen for a while, or go to a time in the recording; then print the tables."""
-    if recording is not None:
-        found = checked_recording(recording, fresh.static_info)
+    """Listen for a while, or go to a time in the recording; then print the tables.
+
+    By the marks of a recording up to that time, the diagnosis comes first.
+    """
+    graph, run = watched_run
+    seconds = given.seconds
+    found_so_far: Diagnosis | None = None
+    differing: RunDifferences | None = None
+    if run is not None and run.source is not None:
+        found = run.recording
         far = round(seconds * 1e9) if seconds is not None else found.end_ns - found.start_ns
         now_ns = min(found.end_ns, found.start_ns + far)
         feed: Feed = RecordedFeed(found, fresh)
-        watched = WatchedMission(recorded(found, recording, now_ns), feed, options)
+        watched = WatchedMission(recorded(found, run.source, now_ns), feed, options)
         watched.take()
         start_ns = found.start_ns
+        past = tuple(mark for mark in found.marks if mark.time_ns <= now_ns)
+        so_far = RecordedRun(replace(found, marks=past), run.source)
+        question = Question(given.types, given.window_s)
+        asked = AskedMission.of(so_far, fresh.static_info, question, good)
+        differing = asked.question.differences
+        found_so_far = asked.diagnosis if past else None
     else:
-        mission, feed = _opened(None, "", fresh)
+        assert graph is not None
+        mission, feed = opened_graph(graph.master, "", fresh)
         watched = WatchedMission(mission, feed, options)
+        differing = diff_running(good, graph.master, fresh.static_info) if good else None
         _listen(watched, _ONCE_S if seconds is None else seconds)
         now_ns = watched.now_ns() or 0
         start_ns = 0
+    if differing is not None:
+        watched.watching.differing = frozenset(one.parameter for one in differing.found)
     look = watched.watching.look(now_ns, options.top, KINDS)
     status = watched.status()
     watched.close()
-    if recording is None and not status.reports:
+    if run is None and not status.evaluations:
         if status.fault:
             raise RunError(status.fault)
         warn("no reports arrived: is a node that was built with TPC running?")
-    if as_json:
-        document = look_json(look, status, now_ns - start_ns if recording is not None else None)
-        click.echo(json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False))
+    if given.as_json:
+        document = look_json(look, status, now_ns - start_ns if run is not None else None)
+        document["diagnosis"] = None if found_so_far is None else diagnosis_json(found_so_far)
+        print_json(document)
         return
     console = Console(width=None if sys.stdout.isatty() else 120)
-    when = f"at {clock_text(now_ns - start_ns)}: " if recording is not None else ""
+    when = f"at {clock_text(now_ns - start_ns)}: " if run is not None else ""
     console.print(f"{when}{status.words()}", highlight=False, markup=False)
+    if differing is not None:
+        console.print(plain(differing.line or differing.title), highlight=False, markup=False)
+    if found_so_far is not None:
+        console.print(plain(f"{found_so_far.blame.title}: {found_so_far.headline}"), markup=False)
     utf8 = console.encoding.startswith("utf")
     for kind in options.layout:
         console.print()
-        for line in table(look, kind, console.width, options.top, utf8=utf8):
-            console.print(line, highlight=False, soft_wrap=True)
+        for row in table(look, kind, console.width, options.top, utf8=utf8):
+            console.print(row, highlight=False, soft_wrap=True)
 
 
 def _listen(watched: WatchedMission, seconds: float) -> None:

@@ -3,19 +3,29 @@
 from __future__ import annotations
 
 import re
+import shlex
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
 import click
-from rich.console import Console
 from rich.text import Text
 
 from pytpc.api.building import BuildOptions, BuildResult, build
 from pytpc.cli.arguments import CONSTANTS, NO_PYTHON, PATH, PYTHON_RULES, RULES, as_object
-from pytpc.cli.console import Advance, found_text, progress, show_units, tell_inner_loops, warn
+from pytpc.cli.console import (
+    Advance,
+    found_text,
+    progress,
+    show_units,
+    tell_inner_loops,
+    tell_next,
+    warn,
+)
+from pytpc.cli.lines import progress_console, say
 from pytpc.workspace import patch
 from pytpc.workspace.colcon import Bases, BuildError
+from pytpc.workspace.ros2 import how_to_source
 
 _JOB_LINE = re.compile(r"^(Starting >>>|Finished <<<|Failed +<<<|Aborted +<<<) (?P<name>\S+)")
 
@@ -114,9 +124,9 @@ def build_command(given: _BuildArguments) -> None:
             )
     except BuildError as error:
         for line in error.tail:
-            click.echo(line, err=True)
+            say(line)
         raise
-    _show_build(result)
+    _show_build(result, given.workspace)
 
 
 COMMANDS: list[click.Command] = [patch_command, build_command]
@@ -131,7 +141,7 @@ class _Progress:
     def __init__(self) -> None:
         self._stack = ExitStack()
         self._scripts: Advance | None = None
-        self._console = Console(stderr=True)
+        self._console = progress_console()
         self._status = self._console.status("finding packages")
         self._running: list[str] = []
 
@@ -161,20 +171,43 @@ class _Progress:
                 self._running.remove(job["name"])
         if not self._console.is_terminal:
             if job is not None:
-                click.echo(line, err=True)
+                say(line)
             return
         running = f"building {', '.join(self._running)}: " if self._running else ""
         text = running + line.strip()
         self._status.update(Text(text[: max(20, self._console.width - 4)], no_wrap=True))
 
 
-def _show_build(result: BuildResult) -> None:
+def _show_build(result: BuildResult, given: Path) -> None:
     show_units(result.static)
     for package, why in result.left_alone.items():
         warn(f"package {package} was built without TPC, because it does not build with it: {why}")
     if result.left_alone:
-        click.echo("run `pytpc build --retry` to try TPC again", err=True)
+        say("run `pytpc build --retry` to try TPC again")
     click.echo(
         f"{found_text(result.static)}, built in {result.seconds:.1f} s: {result.bases.static_info}"
     )
     tell_inner_loops(result.static)
+    _tell_python(result)
+    workspace = shlex.quote(str(given))
+    if any(each.type != "constant" for each in result.static.comparisons.values()):
+        tell_next(f"pytpc run {workspace} LAUNCH, or PACKAGE and LAUNCH")
+    else:
+        tell_next(f"pytpc doctor {workspace}")
+
+
+def _tell_python(result: BuildResult) -> None:
+    """Say under which Python the nodes of ROS 2 run."""
+    scripted = {unit.package for unit in result.units if unit.is_python}
+    if not any(
+        package.ros == "2" and (package.build_type == "ament_python" or package.name in scripted)
+        for package in result.packages
+    ):
+        return
+    if result.ros2 is not None:
+        say(f"nodes of ROS 2 in Python run under {result.ros2.words}")
+    else:
+        warn(
+            "no ROS 2 was sourced: its nodes in Python would run under /usr/bin/python3, which has"
+            f" no rclpy; type this, and build again: {how_to_source()}"
+        )

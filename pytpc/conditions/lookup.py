@@ -15,6 +15,7 @@ from typing import Any
 
 from pytpc.base.atomic import write_atomic
 from pytpc.base.errors import InputError, TpcError
+from pytpc.base.paths import home
 from pytpc.build.reconcile import recorded_units
 from pytpc.conditions.compile_flags import Flags, flags_for
 from pytpc.conditions.cpp_conditions import (
@@ -335,5 +336,5 @@ def _read(file: str) -> bytes | None:
 
 
 def _default_cache() -> Path:
-    base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    base = os.environ.get("XDG_CACHE_HOME") or str(home() / ".cache")
     return Path(base) / "pytpc" / "conditions"

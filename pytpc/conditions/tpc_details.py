@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from typing import TypeVar
 
-from pytpc.base.wording import exact
+from pytpc.base.wording import exact, tidy
 from pytpc.conditions.cpp_conditions import Condition
 from pytpc.conditions.lookup import Answer
 from pytpc.static.link_unit import Comparison, Default, LinkUnit, Transform
@@ -142,7 +142,7 @@ def shown_default(default: Default, *, python: bool = False) -> str:
         return "none in the source"
     if isinstance(default, bool):
         return str(default) if python else str(default).lower()
-    return f'"{default}"' if isinstance(default, str) else exact(default)
+    return f'"{default}"' if isinstance(default, str) else exact(tidy(default))
 
 
 def _once(items: Iterable[_Item]) -> tuple[_Item, ...]:

@@ -34,6 +34,8 @@ from pytpc.static.parameters import (
 from pytpc.static.static_info import StaticInfo
 
 _CLOSE = 1e-9
+_OF_ROS2 = ("rclpy", "rclcpp")
+"""How the names of ROS 2's calls begin: each parameter is one of the node that reads it."""
 
 
 def with_full_names(
@@ -41,10 +43,11 @@ def with_full_names(
 ) -> StaticInfo:
     """The static information with the full names of this mission as sources.
 
-    A name that the node's own name completes stays (``~limit``). So does one that several objects
-    read under different names, if it is not known which of them evaluated the comparison. A
-    comparison with a parameter that is not set is left out if the same comparison is also known
-    under one that is: an older name of it.
+    A name that the node's own name completes stays (``~limit``), and what a node of ROS 2 reads
+    as ``limit`` becomes such a name. A name that several objects read under different full names
+    stays if it is not known which of them evaluated the comparison. A comparison with a parameter
+    that is not set is left out if the same comparison is also known under one that is: an older
+    name of it.
 
     Args:
         static_info: of the build.
@@ -120,17 +123,6 @@ class _Names:
         }
         return frozenset(own) or said
 
-    @cached_property
-    def nodes_of(self) -> Mapping[str, frozenset[str]]:
-        """The nodes that evaluated each comparison."""
-        found = defaultdict(set)
-        for table in (self.recording.events, self.recording.summaries):
-            seen = np.zeros((len(table.keys), len(table.nodes)), np.bool_)
-            seen[table.key, table.node] = True
-            for key, node in np.argwhere(seen).tolist():
-                found[table.keys[key]].add(table.nodes[node])
-        return {key: frozenset(nodes) for key, nodes in found.items()}
-
     def thresholds_of(self, key: str) -> tuple[float, ...]:
         """The different thresholds of a comparison, at most three."""
         found: set[float] = set()
@@ -144,13 +136,17 @@ class _Names:
         source = comparison.source
         if source is None or (source.startswith("/") and DYNAMIC not in source):
             return None
-        reads = {(place.file, place.lineno) for place in comparison.param_reads}
-        keys = {
-            read.key
+        places = {(place.file, place.lineno) for place in comparison.param_reads}
+        reads = [
+            read
             for read in unit.parameters
-            if read.name == source and (read.file, read.lineno) in reads and read.key is not None
-        }
-        said = self.said_of(comparison.key, keys)
+            if read.name == source and (read.file, read.lineno) in places
+        ]
+        said = self.said_of(comparison.key, {read.key for read in reads})
+        if DYNAMIC not in source and any(read.api.startswith(_OF_ROS2) for read in reads):
+            own = f"~{source.lstrip('~')}"
+            if all(name == resolved(own, node) for node, name in said):
+                return own
         if said:
             if DYNAMIC not in source and all(name == resolved(source, node) for node, name in said):
                 return None
@@ -162,7 +158,7 @@ class _Names:
         """The parameter of the server that has this comparison's name and value."""
         source = comparison.source
         assert source is not None
-        nodes = self.nodes_of.get(comparison.key, frozenset())
+        nodes = self.recording.nodes_of.get(comparison.key, frozenset())
         fitting = [name for name in self.values if same_parameter(name, source)]
         fitting = [n for n in fitting if any(n.startswith(f"{node}/") for node in nodes)] or fitting
         if len(fitting) > 1:
@@ -178,7 +174,7 @@ class _Names:
         source = comparison.source
         if source is None:
             return True
-        nodes = self.nodes_of.get(comparison.key, frozenset())
+        nodes = self.recording.nodes_of.get(comparison.key, frozenset())
         if DYNAMIC not in source:
             return any(resolved(source, node) in self.values for node in nodes)
         return any(same_parameter(name, source) for name in self.values)
@@ -254,6 +250,8 @@ def with_keys_of(reference: Recording, static_info: StaticInfo, named: StaticInf
         reference,
         events=replace(events, keys=tuple(keys.get(key, key) for key in events.keys)),
         summaries=replace(summaries, keys=tuple(keys.get(key, key) for key in summaries.keys)),
+        # Asked again, its objects stay where they are.
+        names=tuple(replace(one, key=keys.get(one.key, one.key)) for one in reference.names),
     )
 
 

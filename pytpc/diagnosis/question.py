@@ -6,6 +6,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
+from pytpc.diagnosis.results.differences import RunDifferences
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark, MarkType
 from pytpc.recording.mission import Recording
@@ -34,7 +35,8 @@ class Question:
         window_s: the window of type II, and how long before a mark counts as near to it, in
             seconds.
         top: for how many suspects a value is suggested.
-        reference: a good run of the same build.
+        references: good runs of the same build, the last one last.
+        differences: what differs from these runs, as far as that is known.
         changes: what was changed since the robot worked, newest last; empty if not known. If a
             parameter was changed several times, the oldest change has the value that worked.
         declared: ranges, types and defaults that parameters are declared with; None: nobody has
@@ -52,7 +54,8 @@ class Question:
     types: Types = "believe"
     window_s: float = WINDOW_S
     top: int = 5
-    reference: Recording | None = None
+    references: Sequence[Recording] = ()
+    differences: RunDifferences | None = None
     changes: Sequence[Change] = ()
     declared: Sequence[Declared] | None = None
     flown: Sequence[float] = ()
@@ -66,6 +69,11 @@ class Question:
             raise ValueError(f"types is {self.types!r}, not one of {', '.join(get_args(Types))}")
         if not self.window_s >= 0:
             raise ValueError("window_s is negative")
+
+    @property
+    def reference(self) -> Recording | None:
+        """The last good run, whose values are suggested."""
+        return self.references[-1] if self.references else None
 
     def about(self, declared: Declared | None) -> Question:
         """The question about one parameter, with only its own declaration."""

@@ -7,15 +7,15 @@ from pathlib import Path
 import numpy as np
 
 from pytpc.base.errors import InputError
-from pytpc.ingest import ros1
 from pytpc.ingest.bag_chunks import BrokenBagError, find_damage, messages, read_index
+from pytpc.ingest.decoders import ROS1
 from pytpc.ingest.gathering import Gathering, Progress
-from pytpc.ingest.messages import REPORTS, ROSOUT, ROSOUT_AGG, Decoders, Messages, wanted
+from pytpc.ingest.messages import REPORTS, ROSOUT, ROSOUT_AGG, Messages, wanted
+from pytpc.ingest.unpacking import LARGEST_MESSAGE
 
 _LOG = {"rosgraph_msgs/msg/Log"}
 _TYPES = {ROSOUT: _LOG, ROSOUT_AGG: _LOG, REPORTS: {"std_msgs/msg/String"}}
 _TIMES = {"std_msgs/msg/Time"}
-_DECODERS = Decoders(ros1.decode_log, ros1.decode_string, ros1.decode_time)
 
 
 def read_bag_into(path: Path, gathering: Gathering, on_progress: Progress | None = None) -> None:
@@ -39,7 +39,7 @@ def read_bag_into(path: Path, gathering: Gathering, on_progress: Progress | None
                 gathering.spans.append(index.span)
             logs = [n for n, connection in kept.items() if connection.topic == ROSOUT]
             latched = {kept[n].caller.encode() for n in logs if kept[n].latched}
-            taken = Messages(gathering, str(path), _DECODERS, latched=latched)
+            taken = Messages(gathering, str(path), ROS1, latched=latched)
             total = index.index_pos
             senders = {n: kept[n].caller.encode() for n in logs}
             for chunk in messages(stream, index, kept.keys()) if kept else ():
@@ -49,7 +49,8 @@ def read_bag_into(path: Path, gathering: Gathering, on_progress: Progress | None
                     others = np.arange(chunk.connection.size)
                 for row in others.tolist():
                     connection = kept[int(chunk.connection[row])]
-                    raw = chunk.data[chunk.begin[row] : chunk.end[row]]
+                    end = min(chunk.end[row], chunk.begin[row] + LARGEST_MESSAGE + 1)
+                    raw = chunk.data[chunk.begin[row] : end]
                     time_ns = int(chunk.time_ns[row])
                     taken.take(connection.topic, connection.caller, time_ns, raw)
                 if on_progress is not None:

@@ -8,9 +8,9 @@ http://wiki.ros.org/Bags/Format/2.0
 
 from __future__ import annotations
 
-import bz2
 import re
 import struct
+from array import array
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from itertools import permutations
@@ -18,14 +18,13 @@ from typing import BinaryIO
 
 import numpy as np
 import numpy.typing as npt
-from lz4.frame import LZ4FrameDecompressor  # type: ignore[import-untyped]
 
 from pytpc.base.columns import Int64s
 from pytpc.ingest.magic import BAG_MAGIC
 from pytpc.ingest.spool import Rows
+from pytpc.ingest.unpacking import LARGEST_CHUNK, MOST_MESSAGES, Unpacker, UnpackingError
 
 _LENGTH = struct.Struct("<I")
-_LARGEST_CHUNK = 1 << 30
 _LARGEST_HEADER = 1 << 20
 _LARGEST_FILE = 1 << 60
 _MESSAGE, _HEAD, _INDEX, _CHUNK, _CHUNK_INFO, _CONNECTION = 2, 3, 4, 5, 6, 7
@@ -104,7 +103,9 @@ def read_index(stream: BinaryIO) -> BagIndex:
         if data:
             first = min(first, _time(header, b"start_time"))
             last = max(last, _time(header, b"end_time"))
-    return BagIndex(connections, sorted(chunks), (first, last) if last >= 0 else None, index_pos)
+    return BagIndex(
+        connections, sorted(set(chunks)), (first, last) if last >= 0 else None, index_pos
+    )
 
 
 def find_damage(stream: BinaryIO, size: int) -> str | None:
@@ -165,13 +166,19 @@ def messages(stream: BinaryIO, index: BagIndex, wanted: Collection[int]) -> Iter
         BrokenBagError: a chunk is not where the index says, or is broken inside.
     """
     chosen = frozenset(wanted)
+    unpacker = Unpacker()
+    behind = 0
     for place in index.chunks:
+        if place < behind:
+            raise BrokenBagError(f"the chunk at byte {place} begins within the one before it")
         _seek(stream, place)
         header = _fields(_read_header(stream))
         if header.get(b"op") != bytes([_CHUNK]):
             raise BrokenBagError(f"no chunk at byte {place}")
         length = _LENGTH.unpack(_read(stream, 4))[0]
-        data = _unpacked(header, _read(stream, length))
+        if length > LARGEST_CHUNK:
+            raise BrokenBagError(f"a chunk of {length:,} bytes at byte {place}")
+        data = _unpacked(header, _read(stream, length), unpacker)
         behind = stream.tell()
         try:
             found = _by_index(data, _entries(stream, chosen))
@@ -183,6 +190,7 @@ def messages(stream: BinaryIO, index: BagIndex, wanted: Collection[int]) -> Iter
 def _entries(stream: BinaryIO, chosen: frozenset[int]) -> list[tuple[int, Rows]]:
     """The index records behind a chunk: number of the connection, time and place of messages."""
     found: list[tuple[int, Rows]] = []
+    most = MOST_MESSAGES
     while True:
         head = stream.read(4)
         if len(head) < 4 or _LENGTH.unpack(head)[0] > _LARGEST_HEADER:
@@ -195,6 +203,9 @@ def _entries(stream: BinaryIO, chosen: frozenset[int]) -> list[tuple[int, Rows]]
         if len(raw) != count * _ENTRY.itemsize:
             raise BrokenBagError("an index record of another size than it says")
         if number in chosen:
+            most -= count
+            if most < 0:
+                raise BrokenBagError(f"a chunk with more than {MOST_MESSAGES:,} messages")
             found.append((number, np.frombuffer(raw, _ENTRY)))
 
 
@@ -243,36 +254,24 @@ def _u32(raw: npt.NDArray[np.uint8]) -> Int64s:
 
 
 def _by_search(data: bytes, chosen: frozenset[int]) -> _Found:
-    found = list(_in_chunk(data, chosen))
-    columns = np.array(found, np.int64).reshape(-1, 4).T
-    return columns[0], columns[1], columns[2], columns[3]
+    found = array("q")
+    for one in _in_chunk(data, chosen):
+        found.extend(one)
+    columns = np.frombuffer(found, np.int64).reshape(-1, 4).T
+    return columns[0].copy(), columns[1].copy(), columns[2].copy(), columns[3].copy()
 
 
-def _unpacked(header: dict[bytes, bytes], data: bytes) -> bytes:
-    size = _number(header, b"size", 4)
-    if size > _LARGEST_CHUNK:
-        raise BrokenBagError(f"a chunk of {size} bytes")
+def _unpacked(header: dict[bytes, bytes], data: bytes, unpacker: Unpacker) -> bytes:
     name = header.get(b"compression", b"").decode("ascii", "replace")
     try:
-        if name == "none":
-            return data
-        if name == "bz2":
-            # A broken chunk must not unpack without end.
-            unpacked = bz2.BZ2Decompressor().decompress(data, size + 1)
-        elif name == "lz4":
-            unpacked = LZ4FrameDecompressor().decompress(data, size + 1)
-        else:
-            raise BrokenBagError(f"compression {name!r}")
-    except (OSError, ValueError, RuntimeError, EOFError, AssertionError) as error:
+        return unpacker.unpack(data, name, _number(header, b"size", 4))
+    except UnpackingError as error:
         raise BrokenBagError(str(error)) from error
-    if len(unpacked) != size:
-        raise BrokenBagError(f"a chunk of {len(unpacked)} bytes, not {size}")
-    return unpacked
 
 
 def _in_chunk(data: bytes, chosen: frozenset[int]) -> Iterator[tuple[int, int, int, int]]:
     """Connection, time, begin and end of each message in a chunk's bytes."""
-    at, size = 0, len(data)
+    at, size, records = 0, len(data), 0
     while at < size:
         try:
             body = at + 4 + _LENGTH.unpack_from(data, at)[0]
@@ -284,6 +283,9 @@ def _in_chunk(data: bytes, chosen: frozenset[int]) -> Iterator[tuple[int, int, i
             raise BrokenBagError("a record goes past the end of its chunk")
         fields = _fields(data[at + 4 : body])
         at = end
+        records += 1
+        if records > MOST_MESSAGES or b"op" not in fields:
+            raise BrokenBagError("a chunk of too many records, or one without a kind")
         if fields.get(b"op") == bytes([_MESSAGE]):
             number = _number(fields, b"conn", 4)
             if number in chosen:
@@ -309,7 +311,7 @@ def _seek(stream: BinaryIO, place: int) -> None:
 
 
 def _read(stream: BinaryIO, count: int) -> bytes:
-    if count > _LARGEST_CHUNK:
+    if count > LARGEST_CHUNK:
         raise BrokenBagError(f"a field of {count} bytes")
     data = stream.read(count)
     if len(data) != count:

@@ -57,7 +57,8 @@ class Condenser:
         # All flops are kept until there are very many; then so many of a comparison in a block.
         self._flops_left = _MOST_FLOPS
         self._most_flops = max(2, _MOST_FLOPS // (max(1, blocks) * comparisons))
-        self._cuts = _window_ends([mark.time_ns for mark in gathering.known_marks()])
+        marks = [*gathering.known_marks(), *gathering.marks_nearby]
+        self._cuts = _window_ends([mark.time_ns for mark in marks])
         # Outcome of the last evaluation of each key, -1 before the first.
         self._last = np.full(hot.size, -1, np.int8)
         self._held: list[tuple[Rows, Int64s]] = []

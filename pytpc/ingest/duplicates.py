@@ -12,6 +12,7 @@ text).
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
@@ -61,14 +62,15 @@ class Once:
         """A sentence for each channel from which something was left out."""
         channels = self._gathering.channels
         notes = []
+        passed_on: Counter[tuple[Way, str]] = Counter()
         for code, count in sorted(self._counted.items()):
-            channel = channels[code]
-            why = (
-                "of nodes that report on /rosout too"
-                if channel.way == "aggregate"
-                else "with keys that are in the log messages too"
-            )
-            notes.append(f"{many(count, 'report')} on {channel.topic} {why}: counted once")
+            passed_on[channels[code].way, channels[code].topic] += count
+        for (way, topic), count in passed_on.items():
+            if way == "aggregate":
+                why = "that the node rosout copied from /rosout"
+            else:
+                why = "with keys that are in the log messages too"
+            notes.append(f"{many(count, 'report')} on {topic} {why}: counted once")
         for code, count in sorted(self._matched.items()):
             what = f"{many(count, 'report')} in {channels[code].name}"
             notes.append(f"{what} that also came another way: counted once")

@@ -16,11 +16,13 @@ import numpy as np
 
 from pytpc.base.columns import Bools, Floats, Int32s, Int64s, WordTable
 from pytpc.base.wording import many
+from pytpc.ingest.parameter_events import ParameterEvent
 from pytpc.ingest.short_summary import ShortSummary
 from pytpc.ingest.spool import RUN_ROWS, Spool
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark, MarkMessages, joined
 from pytpc.recording.mission import Dropped, MalformedRecord, ReadName
+from pytpc.recording.parameter_values import SetValue
 from pytpc.recording.summaries import Summaries, Summary
 
 Progress = Callable[[int, int], None]
@@ -100,7 +102,7 @@ class Gathering:
 
     ``spans`` are the times of recordings on their own clock; ``notes`` and ``late_notes`` are for
     the user, before and after those about duplicates; ``without_reports`` are text files without a
-    report.
+    report. ``marks_nearby`` belong to the recording as far as they lie within its time.
 
     Args:
         folder: where rows that are too many for memory are kept; None: all stays in memory.
@@ -128,6 +130,7 @@ class Gathering:
             run_rows // 4 + 1,
         )
         self.marks: list[Mark] = []
+        self.marks_nearby: list[Mark] = []
         self.mark_messages = MarkMessages()
         self.malformed = 0
         self._first: list[tuple[int, MalformedRecord]] = []
@@ -136,6 +139,7 @@ class Gathering:
         self.dropped: Counter[tuple[str, str, str]] = Counter()
         self.dropped_flops: Counter[tuple[str, str, str]] = Counter()
         self.names: dict[ReadName, None] = {}
+        self.values: list[SetValue] = []
         self._sampled: set[int] = set()
         self._about: set[int] = set()
         self._uninspected = 0
@@ -257,6 +261,12 @@ class Gathering:
         """Take in the name of a parameter; nodes report each several times."""
         if len(self.names) < MOST_NAMES:
             self.names[name] = None
+
+    def add_values(self, event: ParameterEvent, time_ns: int) -> None:
+        """Take in what a node's parameters were set to; ``time_ns`` is when it was recorded."""
+        for name, value in event.values.items():
+            full = f"{event.node.rstrip('/')}/{name}"
+            self.values.append(SetValue(event.stamp_ns or time_ns, full, value))
 
     def skip(self, topic: str, time_ns: int, what: str, text: str, turn: int | None = None) -> None:
         """Count a record that cannot be read; the first 20 are kept, in the order of ``turn``."""

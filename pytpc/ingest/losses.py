@@ -51,14 +51,14 @@ class LossCounter(Generic[Name]):
             self._lose(sender, int(missing[missing > 0].sum()), one_is_spared=spared)
             self._last[sender] = int(own[-1])
 
-    def see_text(self, sender: Name, text: bytes) -> int:
+    def see_text(self: LossCounter[str], sender: str, text: bytes) -> int:
         """Take in a text of /threshold_information; return how many reports it has."""
         if not text.startswith(b"#"):
             return 1
         batch = parse_batch(text.partition(b"\n")[0].decode("utf-8", "replace"))
         if not isinstance(batch, BatchHead):
             return 0
-        self.see_batch(sender, batch)
+        self.see_batch(sender or batch.node, batch)
         return batch.count
 
     def see_batch(self, sender: Name, batch: BatchHead) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TypeVar
@@ -18,10 +18,13 @@ from pytpc.ingest.duplicates import APART_NS, TOLERANCE_NS, Once, clock_notes
 from pytpc.ingest.gathering import EVENT_ROW, SUMMARY_ROW, Gathering, Progress
 from pytpc.ingest.spool import Rows
 from pytpc.recording.events import Events
-from pytpc.recording.marks import Mark
+from pytpc.recording.marks import Mark, joined, marks_between, read_marks, write_marks
+from pytpc.recording.marks_home import marks_home
 from pytpc.recording.mission import EVENTS_FILE, SUMMARIES_FILE, Recording, write_marks_json
+from pytpc.recording.parameter_values import ParameterValues
 from pytpc.recording.summaries import Summaries
 
+_MOST_CHANGES = 5
 _Table = TypeVar("_Table", Events, Summaries)
 
 
@@ -103,6 +106,8 @@ class Merged:
         gathering = self.gathering
         marks = gathering.known_marks()
         start_ns, end_ns = self._span(marks)
+        values = ParameterValues(gathering.values)
+        marks = joined([*marks, *marks_between(gathering.marks_nearby, start_ns, end_ns)])
         notes = [
             *gathering.notes,
             *self._once.notes(),
@@ -110,6 +115,7 @@ class Merged:
             *gathering.light_notes(),
             *clock_notes(gathering.channels),
             *self._clock_notes(marks),
+            *_changed(values, start_ns),
         ]
         return Recording(
             name=self.name,
@@ -124,10 +130,14 @@ class Merged:
             summaries=summaries,
             dropped=gathering.dropped_list,
             names=tuple(sorted(gathering.names)),
+            values=values.kept(),
         )
 
     def save(self, folder: Path, told: Progress | None = None) -> Recording:
         """Write a converted folder block by block; the tables of the result are empty.
+
+        Marks that are read with the folder from their own files are not copied into it: they could
+        not be removed any more.
 
         Raises:
             TpcError: a file cannot be written; ``marks.json`` is written last.
@@ -136,23 +146,37 @@ class Merged:
         if len(self.gathering.summaries):
             self._parquet(folder / SUMMARIES_FILE, Summaries.schema, self.summary_blocks())
         rest = self.rest(Events.empty(), Summaries.empty())
-        write_marks_json(rest, folder, self.events, self.summaries)
+        beside = set(marks_home(folder).marks())
+        copied = replace(rest, marks=tuple(mark for mark in rest.marks if mark not in beside))
+        write_marks_json(copied, folder, self.events, self.summaries)
         return rest
 
     def save_parquet(self, path: Path, told: Progress | None = None) -> Recording:
-        """Write only the events; see ``save``."""
+        """Write only the events, and the marks where they are read with them; see ``save``."""
         self._parquet(path, Events.schema, self.event_blocks(), told)
-        return self.rest(Events.empty(), Summaries.empty())
+        return self._rest_beside(path)
 
     def save_csv(self, path: Path, told: Progress | None = None) -> Recording:
-        """Write the events as CSV in the thesis's form, without nodes; see ``save``."""
+        """Write the events as CSV in the thesis's form, without nodes; see ``save_parquet``."""
         total = max(1, len(self.gathering.events))
         with replacing(path) as staged, staged.open("w", encoding="ascii") as stream:
             for rows in self.event_blocks():
                 stream.writelines(self._lines(rows))
                 if told is not None:
                     told(self.events, total)
-        return self.rest(Events.empty(), Summaries.empty())
+        return self._rest_beside(path)
+
+    def _rest_beside(self, path: Path) -> Recording:
+        """What is not in the file ``path``; its marks are written to where they are read with it.
+
+        Those that are there already, stay.
+        """
+        rest = self.rest(Events.empty(), Summaries.empty())
+        home = marks_home(path)
+        if {*rest.marks} - {*home.marks(), *home.marks_nearby()}:
+            before = read_marks(home.file) if home.file.exists() else ()
+            write_marks(joined([*before, *rest.marks]), home.file)
+        return rest
 
     def _lines(self, rows: Rows) -> Iterator[str]:
         names = ["time_ns", "key", "result", "cmp", "thresh", "res"]
@@ -209,6 +233,16 @@ class Merged:
         times = self._times(marks)
         if times and any(_apart(times, span) for span in self.gathering.spans):
             yield "the bag was recorded on another clock than the reports"
+
+
+def _changed(values: ParameterValues, start_ns: int) -> Iterator[str]:
+    """A sentence for each of the first parameters that were set while the mission ran."""
+    changes = list(values.changes())
+    for change in changes[:_MOST_CHANGES]:
+        seconds = (change.time_ns - start_ns) / 1e9
+        yield f"{change.name} was set from {change.old} to {change.new} at {seconds:.1f} s"
+    if len(changes) > _MOST_CHANGES:
+        yield f"{len(changes) - _MOST_CHANGES:,} more parameters were set while the mission ran"
 
 
 def _apart(times: list[int], span: tuple[int, int]) -> bool:

@@ -5,8 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence, Set
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence, Set
 from typing import Protocol, TypeVar
 
 import numpy as np
@@ -14,6 +13,7 @@ import numpy as np
 from pytpc.base.columns import Bools
 from pytpc.base.wording import many
 from pytpc.ingest.bag_chunks import ChunkMessages as Chunk
+from pytpc.ingest.decoders import Decoders
 from pytpc.ingest.gathering import Gathering, Way
 from pytpc.ingest.lines import Batches, Lines
 from pytpc.ingest.losses import LossCounter
@@ -29,11 +29,13 @@ from pytpc.ingest.rosout_line import (
     parse_batch,
 )
 from pytpc.ingest.short_summary import is_short
+from pytpc.ingest.unpacking import LARGEST_MESSAGE
 from pytpc.recording.marks import MarkMessages
 
 ROSOUT = "/rosout"
 ROSOUT_AGG = "/rosout_agg"
 REPORTS = "/threshold_information"
+_TOPICS: Mapping[Way, str] = {"log": ROSOUT, "aggregate": ROSOUT_AGG}
 
 _PREFIX = PREFIX.encode()
 _BATCH = BATCH_PREFIX.encode()
@@ -51,15 +53,6 @@ class _AnyConnection(Protocol):
 
 
 _Connection = TypeVar("_Connection", bound=_AnyConnection)
-
-
-@dataclass(frozen=True, slots=True)
-class Decoders:
-    """Decodes the three kinds of messages; each raises ValueError if bytes are missing."""
-
-    log: Callable[[bytes], LogMessage]
-    text: Callable[[bytes], bytes]
-    time: Callable[[bytes], int]
 
 
 def wanted(
@@ -146,6 +139,9 @@ class Messages:
 
     def take(self, topic: str, caller: str, time_ns: int, raw: bytes) -> None:
         """Read one message; ``time_ns`` is when the recorder got it, ``caller`` who sent it."""
+        if len(raw) > LARGEST_MESSAGE:
+            self._gathering.skip(topic, time_ns, f"a message of {len(raw):,} bytes", "")
+            return
         try:
             if topic in {ROSOUT, ROSOUT_AGG}:
                 self._log(topic, caller, time_ns, raw)
@@ -251,7 +247,7 @@ class Messages:
 
     def _batch(self, way: Way, caller: str, time_ns: int, text: bytes) -> None:
         head, _, rest = text.partition(b"\n")
-        topic = REPORTS if way == "batch" else ROSOUT
+        topic = _TOPICS.get(way, REPORTS)
         batch = parse_batch(as_text(head))
         lines = [line for line in rest.split(b"\n") if line]
         if isinstance(batch, Malformed):
@@ -259,6 +255,7 @@ class Messages:
                 topic, time_ns, f"{batch.what}, column {batch.column}", as_text(head)
             )
         else:
+            caller = caller or batch.node
             self._batches.see(caller, batch)
             said = sum(1 for line in lines if not _is_other(line))
             if said != batch.count:
@@ -270,7 +267,7 @@ class Messages:
                 self._stamped(way, caller, time_ns, line, number)
 
     def _stamped(self, way: Way, caller: str, time_ns: int, line: bytes, number: int = 0) -> None:
-        topic = ROSOUT if way in {"log", "aggregate"} else REPORTS
+        topic = _TOPICS.get(way, REPORTS)
         lines = self._lines_of(way, topic, stamped=True)
         if _is_other(line):
             lines.add_other(as_text(line), caller, time_ns, number)

@@ -9,22 +9,27 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from importlib import import_module
+from itertools import islice
 from pathlib import Path
 
+from pytpc.base.closest import path_hint
 from pytpc.base.errors import InputError, TpcError
-from pytpc.base.wording import many
+from pytpc.base.regular_files import open_file, real_path
+from pytpc.base.wording import listed, many, plain
 from pytpc.ingest.duplicates import TOLERANCE_NS
 from pytpc.ingest.folder import read_folder_into
 from pytpc.ingest.gathering import Gathering, Progress
-from pytpc.ingest.magic import BAG_MAGIC, MCAP_MAGIC, SQLITE_MAGIC, TPC_MAGIC
+from pytpc.ingest.magic import BAG_MAGIC, MCAP_MAGIC, PARQUET_MAGIC, SQLITE_MAGIC, TPC_MAGIC
 from pytpc.ingest.merged import Merged
-from pytpc.recording.marks import Mark, joined, marks_beside, read_marks
+from pytpc.recording.marks import begins_marks, joined, marks_between, read_marks
+from pytpc.recording.marks_home import marks_home
 from pytpc.recording.mission import (
     EVENTS_FILE,
-    MARKS_FILE,
     REPORTS_FOLDER,
     RUN_FILE,
     Recording,
+    is_converted,
+    is_ros2_folder,
     load_recording,
 )
 
@@ -34,14 +39,13 @@ _BY_MAGIC = {
     BAG_MAGIC[:8]: ("bag", "read_bag_into"),
     MCAP_MAGIC: ("ros2_bag", "read_ros2_into"),
     SQLITE_MAGIC: ("ros2_bag", "read_ros2_into"),
+    PARQUET_MAGIC: ("folder", "read_parquet_into"),
 }
 """Module and function of the reader of each format."""
 MOST_ROWS = 1 << 22
 """A binary file with more reports is condensed, if the recording is read into memory."""
-ROS2_FILE = "metadata.yaml"
 _FIRST = 4096
-# A spreadsheet may have changed the commas; the reader of marks then says what is wrong.
-_MARKS = re.compile(rb'(?:\xef\xbb\xbf)?"?time_ns"?\s*[,;\t]\s*"?type')
+_MOST_BELOW, _LISTED = 500, 6
 # The rosout node and roscpp begin a new file after 100 MB.
 _ROTATED = re.compile(r"\.log\.[0-9]+")
 
@@ -56,8 +60,8 @@ def read(
 
     Args:
         paths: bags (ROS 1, .mcap, .db3), binary files, logs, console text, CSV (reports or marks),
-            folders of such files, and folders that ``pytpc convert`` wrote. Marks in a file
-            ``NAME.marks.csv`` beside one of them are read with it.
+            folders of such files, and folders and files that ``pytpc convert`` wrote. The marks of
+            each are read with it (`pytpc.recording.marks_home`).
         on_progress: called with (done, total) now and then, for one file after another.
         tolerance_ns: how far apart in time the same report may be in two files.
 
@@ -65,9 +69,11 @@ def read(
         InputError: a file is missing, of no known format, or broken; one line.
     """
     given = [paths] if isinstance(paths, Path) else list(paths)
-    if len(given) == 1 and is_converted(given[0]):
-        recording = load_recording(given[0])
-        return replace(recording, marks=joined([*recording.marks, *_beside(given[0])]))
+    converted = _converted(given[0]) if len(given) == 1 else None
+    if converted is not None:
+        recording, home = load_recording(converted), marks_home(given[0])
+        nearby = marks_between(home.marks_nearby(), recording.start_ns, recording.end_ns)
+        return replace(recording, marks=joined([*recording.marks, *home.marks(), *nearby]))
     gathering = Gathering(most_rows=MOST_ROWS)
     gather(given, gathering, on_progress)
     return Merged(gathering, name_of(given), tolerance_ns).recording()
@@ -109,7 +115,7 @@ def opened(
 def gather(
     paths: Sequence[Path], gathering: Gathering, on_progress: Progress | None = None
 ) -> None:
-    """Read all of ``paths`` into ``gathering``, and the marks beside them.
+    """Read all of ``paths`` into ``gathering``, and their marks.
 
     A folder stands for the recordings in it.
 
@@ -120,17 +126,19 @@ def gather(
     last: list[tuple[Reader, Path]] = []
     for path in paths:
         found = sources(path)
-        if path not in found and path.resolve() not in seen:
-            seen.add(path.resolve())
-            gathering.marks += _beside(path)
+        home = marks_home(path)
+        gathering.marks += home.marks()
+        gathering.marks_nearby += home.marks_nearby()
         for source in found:
             # A file with two names is read once.
-            real = source.resolve()
+            real = real_path(source)
             if real in seen:
                 continue
             seen.add(real)
             reader = reader_of(source)
-            gathering.marks += _beside(source)
+            if source.is_dir() or source.is_symlink():
+                # Those of the files in a folder are the folder's.
+                gathering.marks += marks_home(source).marks()
             is_binary = reader.__name__ == _BY_MAGIC[TPC_MAGIC][1]
             if is_binary and not gathering.has_room(source.stat().st_size // 32):
                 # It is condensed, which needs the marks of all others.
@@ -154,9 +162,12 @@ def sources(path: Path) -> list[Path]:
     Raises:
         InputError: it is not there, or the folder has no recordings.
     """
-    if not path.exists():
-        raise InputError("no such bag, file or folder", path)
-    if not path.is_dir() or is_converted(path) or (path / ROS2_FILE).is_file():
+    if not path.exists() and not path.is_symlink():
+        raise InputError(f"no such bag, file or folder{path_hint(path)}", path)
+    converted = _converted(path)
+    if converted is not None:
+        return [converted]
+    if not path.is_dir() or is_ros2_folder(path):
         return [path]
     try:
         entries = sorted(entry for entry in path.iterdir() if not entry.name.startswith("."))
@@ -169,14 +180,40 @@ def sources(path: Path) -> list[Path]:
     if not found and any(path.glob("*.bag.active")):
         what = "only an unfinished bag: run rosbag reindex on it, then remove .active from its name"
         raise InputError(what, path)
+    if not found and any(path.glob("*.mcap.active")):
+        what = "only an unfinished MCAP file: run mcap recover on it, and give what that writes"
+        raise InputError(what, path)
     if not found:
-        raise InputError("no recordings in this folder", path)
+        raise InputError(f"no recordings in this folder; {_to_give(path, entries)}", path)
     return found
 
 
-def is_converted(path: Path) -> bool:
-    """Whether ``pytpc convert`` wrote this folder."""
-    return (path / MARKS_FILE).is_file() and (path / EVENTS_FILE).is_file()
+def _to_give(folder: Path, entries: Sequence[Path]) -> str:
+    """What to give instead of a folder without recordings: those in its folders, if it has any."""
+    below = [plain(str(folder / one.name)) for one in entries[:_MOST_BELOW] if _holds_mission(one)]
+    if not below:
+        return "give a bag, or a folder that `pytpc record` wrote"
+    which = "give the one below it" if len(below) == 1 else f"give one of the {len(below)} below it"
+    return f"{which}: {listed(below, _LISTED)}"
+
+
+def _holds_mission(folder: Path) -> bool:
+    """Whether a folder is a recorded mission; logs and tables alone may be of anything."""
+    try:
+        if is_converted(folder) or is_ros2_folder(folder) or (folder / RUN_FILE).is_file():
+            return True
+        return folder.is_dir() and any(
+            one.suffix in {".bag", ".mcap", ".db3", ".tpc"}
+            for one in islice(folder.iterdir(), _MOST_BELOW)
+        )
+    except OSError:
+        return False
+
+
+def _converted(path: Path) -> Path | None:
+    """The folder of ``pytpc convert`` that this is, or whose events this is, if there is one."""
+    folder = path.parent if path.name == EVENTS_FILE else path
+    return folder if is_converted(folder) else None
 
 
 def name_of(paths: Sequence[Path]) -> str:
@@ -194,7 +231,7 @@ def reader_of(path: Path) -> Reader:
     if path.is_dir():
         return read_folder_into if is_converted(path) else _reader("ros2_bag", "read_ros2_into")
     try:
-        with path.open("rb") as stream:
+        with open_file(path) as stream:
             first = stream.read(_FIRST)
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror or error}", path) from error
@@ -202,13 +239,13 @@ def reader_of(path: Path) -> Reader:
         if first.startswith(magic):
             return _reader(module, name)
     if not first:
-        raise InputError("the file is empty", path)
+        raise InputError("the file is empty: nothing was recorded, or nothing copied", path)
     if BAG_MAGIC.startswith(first) or path.suffix == ".bag":
         return _reader("bag", "read_bag_into")
-    if _MARKS.match(first):
+    if begins_marks(first):
         return _read_marks_into
     if b"\0" in first:
-        raise InputError("neither a bag, nor a .tpc file, nor text", path)
+        raise InputError("neither a bag, nor a .tpc file, nor Parquet, nor text", path)
     return _reader("text", "read_text_into")
 
 
@@ -218,19 +255,13 @@ def _reader(module: str, name: str) -> Reader:
     return found
 
 
-def _beside(path: Path) -> tuple[Mark, ...]:
-    """The marks that were made after the recording ``path``, by ``pytpc mark``."""
-    file = marks_beside(path)
-    return read_marks(file) if file.is_file() else ()
-
-
 def _read_marks_into(path: Path, gathering: Gathering, on_progress: Progress | None) -> None:
     gathering.marks += read_marks(path)
 
 
 def _is_recording(path: Path) -> bool:
     if path.is_dir():
-        return is_converted(path) or (path / ROS2_FILE).is_file()
+        return is_converted(path) or is_ros2_folder(path)
     if (
         path.name.endswith(".marks.csv")
         and path.with_name(path.name[: -len(".marks.csv")]).exists()

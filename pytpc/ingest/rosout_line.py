@@ -45,7 +45,8 @@ _DROPPED = re.compile(
     rf"({KEY})?,count:({_COUNT}),flops:({_COUNT}),why:(site|process|nested|stopped){_END}"
 )
 _BATCH = re.compile(
-    rf"#seq:({_COUNT}),count:({_COUNT}),dropped:({_COUNT}),pid:({_COUNT}),steady:({TIME}){_END}"
+    rf"#seq:({_COUNT}),count:({_COUNT}),dropped:({_COUNT}),pid:({_COUNT}),steady:({TIME})"
+    rf"(?:,node:(?P<node>/[A-Za-z0-9_/]{{1,1000}}))?{_END}"
 )
 _NAME = re.compile(
     rf"({KEY})(?:,(?P<name>/[A-Za-z0-9_/~.]{{1,1000}}))?(?:,of:(?P<object>[1-9][0-9]{{0,8}}))?{_END}"
@@ -93,13 +94,15 @@ class BatchHead:
     """The first line of a message of several lines.
 
     ``seq`` is the number, in its process, of the first of the ``count`` reports that follow;
-    ``dropped`` is how many the process had left out when it was sent.
+    ``dropped`` is how many the process had left out when it was sent. ``node`` is the sender, where
+    the line says it: on ROS 2 nothing else does.
     """
 
     seq: int
     count: int
     dropped: int
     pid: int
+    node: str = ""
 
 
 def as_text(raw: bytes) -> str:
@@ -185,11 +188,12 @@ def parse_name(text: str, place: int = 0) -> Named | Malformed:
 
 
 def parse_batch(text: str) -> BatchHead | Malformed:
-    """Read ``#seq:N,count:N,dropped:N,pid:P,steady:S``."""
+    """Read ``#seq:N,count:N,dropped:N,pid:P,steady:S[,node:/NAME]``."""
     found = _BATCH.fullmatch(text)
     if found is None:
         return Malformed("a line that begins with # is #seq:N,count:N,dropped:N,pid:P,steady:S", 1)
-    return BatchHead(*(int(number) for number in found.groups()[:4]))
+    seq, count, dropped, pid = (int(number) for number in found.groups()[:4])
+    return BatchHead(seq, count, dropped, pid, found["node"] or "")
 
 
 def nanoseconds(text: str) -> int:

@@ -10,11 +10,14 @@ from typing import TypeVar, overload
 
 from rich.cells import cell_len
 
-from pytpc.base.wording import exact, percent, plain, show
-from pytpc.diagnosis.results.advice import Advice, BlamedAdvice
-from pytpc.diagnosis.results.suspects import Blame, MarkRanking
+from pytpc.base.wording import exact, percent, plain, show, shown_value
+from pytpc.diagnosis.results.advice import Advice
+from pytpc.diagnosis.results.diagnosis import Diagnosis
+from pytpc.diagnosis.results.differences import RunDifferences
+from pytpc.diagnosis.results.suspects import MarkRanking
 
 _GAP = 2
+_DIFFERENCES = 8
 Item = TypeVar("Item")
 
 
@@ -134,27 +137,14 @@ class Advices(TableSequence[Advice]):
         return NotebookTable(headings, tuple(rows), frozenset({0, 2}))
 
 
-@dataclass(frozen=True, slots=True)
-class Diagnosed:
-    """What all marks of a mission say together, and what to do with the first suspects.
+@dataclass(frozen=True)
+class Diagnosed(Diagnosis):
+    """The answer about a mission, to look at in a terminal or a notebook."""
 
-    ``blame`` has all suspects with their probabilities, and what keeps them from being surer;
-    ``advice`` is the value to try of the first ones
-    (`pytpc.diagnosis.results.advice.BlamedAdvice`).
-    """
-
-    blame: Blame
-    advice: tuple[BlamedAdvice, ...]
-
-    @property
-    def accused(self) -> str | None:
-        """The parameter to blame; None where it is not sure (a probability below one half)."""
-        return self.blame.accused
-
-    @property
-    def confidence(self) -> float:
-        """The probability of the first suspect."""
-        return self.blame.confidence
+    @classmethod
+    def of(cls, found: Diagnosis) -> Diagnosed:
+        """The same answer."""
+        return cls(found.blame, found.advice, found.differences)
 
     def rows(self) -> list[dict[str, object]]:
         """All suspects, flat; ``pandas.DataFrame(diagnosed.rows())``.
@@ -175,9 +165,9 @@ class Diagnosed:
         ]
 
     def table(self) -> NotebookTable:
-        """A row for each suspect that has an advice."""
+        """A row for each likely suspect that has an advice."""
         rows = []
-        for one in self.advice:
+        for one in self.shown:
             accused, tried = one.accused, one.remedy
             what = f"{tried.direction} to {exact(tried.value)}"
             rows.append(
@@ -194,15 +184,50 @@ class Diagnosed:
         headings = ("#", "parameter", "probability", "type", "value", "to try", "compared at")
         return NotebookTable(headings, tuple(rows), frozenset({0, 2, 4}))
 
-    def _said(self) -> list[str]:
-        return [self.blame.title, self.blame.text, *self.blame.notes]
+    def _parts(self) -> tuple[list[str], list[NotebookTable], list[str]]:
+        """Lines, tables and lines, in this order."""
+        tables, before, after = [], [], []
+        if self.differences is not None:
+            found = self.differences
+            if found.found:
+                tables.append(differences_table(found, _DIFFERENCES))
+            else:
+                before.append(found.title)
+            if len(found.found) > _DIFFERENCES:
+                after.append(f"and {len(found.found) - _DIFFERENCES:,} more parameters that differ")
+            before += found.notes
+        if self.shown:
+            tables.append(self.table())
+        before += [self.blame.title, self.headline, *self.blame.notes]
+        return before, tables, [*after, *([self.folded_text] if self.folded_text else [])]
 
     def __str__(self) -> str:
-        """The verdict and the table as text."""
-        said = [plain(line) for line in self._said()]
-        return "\n".join([*said, str(self.table())] if self.advice else said)
+        """The verdict and the tables as text."""
+        before, tables, after = self._parts()
+        return "\n".join([*map(plain, before), *map(str, tables), *map(plain, after)])
 
     def _repr_html_(self) -> str:
         """The same for a notebook, escaped."""
-        said = "<br>".join(escape(plain(line)) for line in self._said())
-        return f"<p>{said}</p>{self.table()._repr_html_() if self.advice else ''}"
+        before, tables, after = self._parts()
+        shown = "".join(one._repr_html_() for one in tables)
+        return f"<p>{_lines(before)}</p>{shown}{f'<p>{_lines(after)}</p>' if after else ''}"
+
+
+def _lines(texts: Sequence[str]) -> str:
+    return "<br>".join(_html(text) for text in texts)
+
+
+def differences_table(found: RunDifferences, most: int | None = None) -> NotebookTable:
+    """A row for each parameter that differs from the good runs, or for the first ``most``."""
+    rows = [
+        (
+            one.name,
+            shown_value(one.good.value),
+            shown_value(one.bad.value),
+            one.bad.place,
+            one.effect,
+        )
+        for one in found.found[:most]
+    ]
+    headings = ("parameter", "good run", "this run", "set at", "effect")
+    return NotebookTable(headings, tuple(rows), frozenset({1, 2}), found.title)

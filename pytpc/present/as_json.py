@@ -17,8 +17,10 @@ from pytpc.diagnosis.results.advice import (
     Suggestion,
     WhatIf,
 )
+from pytpc.diagnosis.results.diagnosis import Diagnosis
+from pytpc.diagnosis.results.differences import Difference, RunDifferences, SetValue
 from pytpc.diagnosis.results.live import LiveRow, Look
-from pytpc.diagnosis.results.suspects import Blame, MarkRanking, Suspect
+from pytpc.diagnosis.results.suspects import MarkRanking, Suspect
 from pytpc.present.watch_screen import Status
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark
@@ -42,7 +44,7 @@ def _without_nan(value: object) -> object:
         return finite(value)
     if isinstance(value, dict):
         return {name: _without_nan(one) for name, one in value.items()}
-    return [_without_nan(one) for one in value] if isinstance(value, tuple) else value
+    return [_without_nan(one) for one in value] if isinstance(value, list | tuple) else value
 
 
 def remedy_json(found: Remedy) -> Json:
@@ -92,10 +94,7 @@ def ranking_json(ranking: MarkRanking, recording: Recording, rows: Sequence[Sugg
     mark = ranking.mark
     return {
         "mission": recording.name,
-        "time_ns": mark.time_ns,
-        "seconds": (mark.time_ns - recording.start_ns) / 1e9,
-        "type": mark.type,
-        "observer": mark.observer,
+        **mark_json(mark, recording.start_ns),
         "parameters": ranking.parameters,
         "enough": ranking.enough,
         "reason": ranking.reason,
@@ -146,16 +145,51 @@ def group_json(group: MarkGroup, start_ns: int) -> Json:
     }
 
 
-def blame_json(blame: Blame, advice: Sequence[BlamedAdvice]) -> Json:
+def diagnosis_json(found: Diagnosis) -> Json:
     """What all marks say together, with the suspects that have an advice."""
+    blame = found.blame
     return {
-        "text": blame.text,
-        "accused": blame.accused,
+        "text": found.headline,
+        "action": found.action,
+        "accused": found.accused,
         "confidence": blame.confidence,
         "none": blame.none,
         "parameters": blame.parameters,
         "notes": list(blame.notes),
-        "suspects": [_blamed(one) for one in advice],
+        "suspects": [_blamed(one) for one in found.advice],
+        "differences": None if found.differences is None else differences_json(found.differences),
+    }
+
+
+def differences_json(found: RunDifferences) -> Json:
+    """What differs from good runs."""
+    return {
+        "good": list(found.good),
+        "bad": found.bad,
+        "complete": found.is_complete,
+        "notes": list(found.notes),
+        "code": None if found.code is None else {"same": found.code.is_same, **asdict(found.code)},
+        "parameters": [_difference(one) for one in found.found],
+    }
+
+
+def _difference(found: Difference) -> Json:
+    def value(one: SetValue) -> Json:
+        return {"value": _without_nan(one.value), "place": one.place}
+
+    return {
+        "parameter": found.parameter,
+        "name": found.name,
+        "good": value(found.good),
+        "bad": value(found.bad),
+        "state": found.state,
+        "effect": found.effect,
+        "reads": list(found.reads),
+        "compared_at": list(found.compared_at),
+        "evaluations": found.evaluations,
+        "turned": found.turned,
+        "turned_near": found.turned_near,
+        "comparisons": [asdict(one) for one in found.replayed],
     }
 
 
@@ -204,7 +238,7 @@ def look_json(look: Look, status: Status, into_ns: int | None) -> Json:
     return {
         "time_ns": look.now_ns,
         "seconds": None if into_ns is None else into_ns / 1e9,
-        "reports": status.reports,
+        "evaluations": status.evaluations,
         "nodes": status.nodes,
         "unknown_keys": status.unknown,
         "lost": status.lost,

@@ -6,9 +6,9 @@ import select
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import replace
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from prompt_toolkit.input import Input, create_input
 from prompt_toolkit.key_binding import KeyPress
@@ -29,7 +29,7 @@ from pytpc.recording.marking_session import (
     press,
     screen,
 )
-from pytpc.recording.marks_file import MarksFile
+from pytpc.recording.marks_file import END_PATIENCE_S, KEY_PATIENCE_S, MarksFile
 
 _TURN_S = 0.2
 _ESCAPE_S = 0.05
@@ -71,6 +71,9 @@ class MarkedMission(Protocol):
     def close(self) -> None:
         """The session has ended."""
 
+    def unheard(self) -> int:
+        """How many messages about marks nobody got."""
+
 
 class RecordedMission:
     """A recording that a ``Player`` runs through."""
@@ -111,6 +114,10 @@ class RecordedMission:
     def close(self) -> None:
         """Nothing to close."""
 
+    def unheard(self) -> int:
+        """None: nobody else needs to know."""
+        return 0
+
 
 Paint = Callable[[Session, View, int, int, bool], Sequence[Text]]
 """Makes the lines of a screen, at most as wide and high as the two numbers; the last argument says
@@ -124,22 +131,36 @@ def paint_marks(
     return [Text(line) for line in screen(session, view, width, height)]
 
 
+class Showing(NamedTuple):
+    """How a session is shown, and what ends it besides the observer.
+
+    ``paint`` makes the screen; ``full``: use the whole screen, and restore it afterwards.
+    ``is_over`` says whether the mission has ended, which ends the session, but not within a note;
+    with it, signals are the caller's. ``must_end`` says whether to end at once, as after a signal.
+    """
+
+    paint: Paint = paint_marks
+    full: bool = False
+    is_over: Callable[[], bool] | None = None
+    must_end: Callable[[], bool] = lambda: False
+
+
+MARKS_SHOWN = Showing()
+"""The screen of ``mark``."""
+
+
 def run_marking(
-    session: Session,
-    mission: MarkedMission,
-    file: MarksFile,
-    *,
-    paint: Paint = paint_marks,
-    full: bool = False,
+    session: Session, mission: MarkedMission, file: MarksFile, how: Showing = MARKS_SHOWN
 ) -> Session:
     """Mark until the observer or a signal ends the session; then the marks are in the file.
+
+    A note that a signal or the end of the terminal interrupts is kept as far as it was typed.
 
     Args:
         session: with earlier marks.
         mission: what is marked.
         file: where the marks go.
-        paint: makes the screen.
-        full: use the whole screen, and restore it afterwards.
+        how: how it is shown.
 
     Raises:
         RunError: standard input is no terminal.
@@ -149,8 +170,11 @@ def run_marking(
         raise RunError("standard input is not a terminal, so no keys can be read")
     console = Console()
     try:
-        with signals_end(), _keys() as read, _shown(console, paint, full=full) as show:
-            while not session.ended:
+        signals = signals_end() if how.is_over is None else nullcontext()
+        with signals, _keys() as read, _shown(console, how.paint, full=how.full) as show:
+            while not (session.ended or how.must_end()):
+                if how.is_over is not None and session.typing is None and how.is_over():
+                    break
                 show(session, mission.view())
                 for key in read():
                     if session.typing is None and mission.press(key):
@@ -165,7 +189,13 @@ def run_marking(
                 mission.tick()
                 session = _saved(session, file)
     finally:
-        wrong = file.flush()
+        if session.typing is not None:
+            session, noted = press(session, "enter", None)
+            if noted is not None:
+                file.take(noted)
+                mission.send(noted)
+        # Nobody tries again after this.
+        wrong = file.flush(END_PATIENCE_S)
         mission.close()
         if wrong:
             raise RunError(wrong)
@@ -174,7 +204,7 @@ def run_marking(
 
 def _saved(session: Session, file: MarksFile) -> Session:
     """The session with a word on whether all marks are in the file."""
-    wrong = file.flush()
+    wrong = file.flush(KEY_PATIENCE_S)
     if wrong:
         return replace(session, said=wrong)
     return replace(session, said="saved now") if session.said == file.fault else session
@@ -196,7 +226,7 @@ def _keys() -> Iterator[Callable[[], list[str]]]:
                 time.sleep(_ESCAPE_S)
                 pressed = source.read_keys() if _is_ready(source) else source.flush_keys()
             found = [key for one in pressed for key in _named(one)]
-            return [*found, "end"] if source.closed else found
+            return [*found, "enter", "end"] if source.closed else found
 
         yield read
     source.close()

@@ -6,10 +6,9 @@ from collections.abc import Sequence
 
 from rich.console import Console, Group, RenderableType
 from rich.padding import Padding
-from rich.table import Table
 from rich.text import Text
 
-from pytpc.base.wording import exact, many, percent, plain, show
+from pytpc.base.wording import exact, many, percent, plain, show, shown_value
 from pytpc.diagnosis.results.advice import (
     BlamedAdvice,
     JoinedAdvice,
@@ -18,7 +17,10 @@ from pytpc.diagnosis.results.advice import (
     Suggested,
     Suggestion,
 )
-from pytpc.diagnosis.results.suspects import Blame, MarkRanking
+from pytpc.diagnosis.results.diagnosis import Diagnosis
+from pytpc.diagnosis.results.differences import Difference, RunDifferences
+from pytpc.diagnosis.results.suspects import MarkRanking
+from pytpc.present.listing import Heading, Listing
 from pytpc.recording.marks import MarkType
 from pytpc.recording.mission import Recording
 from pytpc.static.link_unit import Comparison
@@ -29,6 +31,41 @@ _TYPE_WORDS = {
     None: "no type",
 }
 _KINDS: dict[MarkType, str] = {"I": "I: did", "II": "II: does not"}
+_DIFFERENCES = 8
+_TERMS = (
+    "Type I: it did what it should not. Type II: it does not do what it should. None of the"
+    " parameters: a fault in the code, or something around the robot."
+)
+_SCORES = "The lower the score, the more suspicious. `pytpc rank --help` explains the terms."
+_NUMBER = Heading("#", right=True, in_line=True)
+_PARAMETER = Heading("Parameter", in_line=True)
+_COMPARED = Heading("Compared at")
+_BLAMED = (
+    _NUMBER,
+    _PARAMETER,
+    Heading("Probability", right=True, in_line=True),
+    Heading("Type", in_line=True),
+    Heading("Value", right=True),
+    Heading("To try"),
+    _COMPARED,
+)
+_DIFFERING = (
+    _PARAMETER,
+    Heading("Good run", right=True),
+    Heading("This run", right=True),
+    Heading("Set at"),
+    Heading("What it changed"),
+)
+_BY_TYPE = Heading("By type")
+_RANKED = (
+    _NUMBER,
+    _PARAMETER,
+    Heading("Value", right=True),
+    Heading("Suggestion"),
+    _BY_TYPE,
+    Heading("Score", right=True),
+    _COMPARED,
+)
 _WAYS = {"raise": "raise to", "lower": "lower to", "switch": "switch to"}
 
 
@@ -39,27 +76,72 @@ def print_rankings(
 ) -> None:
     """Print a table for each mark: position, parameter, value, suggestion, source line, score."""
     for number, (ranking, rows) in enumerate(rankings, start=1):
-        console.print(_mark(number, ranking, recording, rows), highlight=False)
+        console.print(_mark(console, number, (ranking, rows), recording), highlight=False)
+    if rankings:
+        console.print(_indented(Text(_SCORES, style="dim")), highlight=False)
 
 
-def print_blame(console: Console, blame: Blame, advice: Sequence[BlamedAdvice]) -> None:
-    """Print what all marks say together: the verdict, and a table of the suspects with advice."""
-    verdict = Text(plain(blame.text), style="bold" if blame.accused is not None else "yellow")
-    parts: list[RenderableType] = [Text(blame.title, style="bold"), _indented(verdict)]
+def print_diagnosis(console: Console, found: Diagnosis) -> None:
+    """Print the answer about a mission: what differs, the verdict, and the suspects with advice."""
+    blame = found.blame
+    if found.differences is not None:
+        print_differences(console, found.differences)
+    parts: list[RenderableType] = [Text(blame.title, style="bold"), _verdict(found)]
     parts += [_indented(Text(plain(note), style="yellow")) for note in blame.notes]
-    if advice:
-        table = _table()
-        table.add_column("#", justify="right")
-        table.add_column("Parameter", overflow="fold")
-        table.add_column("Probability", justify="right")
-        table.add_column("Type")
-        table.add_column("Value", justify="right")
-        table.add_column("To try", overflow="fold")
-        table.add_column("Compared at", overflow="fold")
-        for one in advice:
-            table.add_row(*_blamed_cells(one))
-        parts.append(_indented(table))
+    if found.shown:
+        rows = [_blamed_cells(one) for one in found.shown]
+        parts.append(_indented(_listing(console, _BLAMED, rows)))
+    if found.folded_text:
+        parts.append(_indented(Text(found.folded_text, style="dim")))
+    if found.shown:
+        parts.append(_indented(Text(_TERMS, style="dim")))
     console.print(Padding(Group(*parts), (0, 0, 1, 0), expand=False), highlight=False)
+
+
+def _verdict(found: Diagnosis) -> RenderableType:
+    style = "bold" if found.accused is not None else "yellow"
+    return _indented(Text(plain(found.headline), style=style))
+
+
+def print_differences(
+    console: Console, found: RunDifferences, *, most: int | None = _DIFFERENCES, each: bool = False
+) -> None:
+    """Print what differs from good runs.
+
+    Args:
+        console: where to.
+        found: the differences.
+        most: how many are listed; None: all.
+        each: also print what became of each replayed comparison, and the full names.
+    """
+    parts: list[RenderableType] = [Text(plain(found.title), style="bold")]
+    if found.found:
+        rows = [_difference_cells(one, each=each) for one in found.found[:most]]
+        parts.append(_indented(_listing(console, _DIFFERING, rows)))
+        if most is not None and len(found.found) > most:
+            more = f"and {len(found.found) - most:,} more: `pytpc diff GOOD BAD` shows all"
+            parts.append(_indented(Text(more, style="dim")))
+    parts += [_indented(Text(plain(note), style="yellow")) for note in found.notes]
+    console.print(Padding(Group(*parts), (0, 0, 1, 0), expand=False), highlight=False)
+
+
+def _difference_cells(one: Difference, *, each: bool) -> list[Text]:
+    effect = Text(plain(one.effect), style="" if one.turned else "dim")
+    # What became of the only comparison is said already.
+    is_only = len(one.replayed) == len(one.compared_at) == 1
+    for replayed in one.replayed if each else ():
+        first = "" if replayed.first_s is None else f", first at {replayed.first_s:.1f} s"
+        of = f"{replayed.turned:,} of {replayed.evaluations:,}"
+        effect.append(first if is_only else f"\n{plain(replayed.place)}: {of}{first}")
+        if replayed.source_code:
+            effect.append(f"\n{plain(replayed.source_code)}", style="dim")
+    return [
+        Text(plain(one.parameter if each else one.name), style="bold" if one.turned else ""),
+        Text(shown_value(one.good.value)),
+        Text(shown_value(one.bad.value)),
+        Text(plain(one.bad.place)),
+        effect,
+    ]
 
 
 def _blamed_cells(one: BlamedAdvice) -> list[Text]:
@@ -77,8 +159,12 @@ def _blamed_cells(one: BlamedAdvice) -> list[Text]:
 
 
 def _mark(
-    number: int, ranking: MarkRanking, recording: Recording, rows: list[Suggested]
+    console: Console,
+    number: int,
+    ranked: tuple[MarkRanking, list[Suggested]],
+    recording: Recording,
 ) -> RenderableType:
+    ranking, rows = ranked
     mark = ranking.mark
     seconds = (mark.time_ns - recording.start_ns) / 1e9
     by = f", by {mark.observer}" if mark.observer else ""
@@ -90,24 +176,17 @@ def _mark(
         heading.append(_indented(_lack(ranking.reason)))
     if not rows:
         return Padding(Group(*heading), (0, 0, 1, 0))
-    table = _table()
-    table.add_column("#", justify="right")
-    table.add_column("Parameter", overflow="fold")
-    table.add_column("Value", justify="right")
-    table.add_column("Suggestion", overflow="fold")
     # Scores of both types stand in one list where the mark's type is not all that counts.
     mixed = any(row.suspect.type != mark.type for row in rows)
-    if mixed:
-        table.add_column("By type")
-    table.add_column("Score", justify="right")
-    table.add_column("Compared at", overflow="fold")
-    for row in rows:
-        table.add_row(*_cells(row, mixed))
-    return Group(*heading, Padding(table, (0, 0, 1, 2)))
+    headings = [one for one in _RANKED if mixed or one is not _BY_TYPE]
+    listing = _listing(console, headings, [_cells(row, mixed) for row in rows])
+    return Group(*heading, Padding(listing, (0, 0, 1, 2), expand=False))
 
 
-def _table() -> Table:
-    return Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+def _listing(
+    console: Console, headings: Sequence[Heading], rows: Sequence[Sequence[Text]]
+) -> Listing:
+    return Listing(headings, rows, one_line=not console.is_terminal)
 
 
 def _indented(part: RenderableType) -> RenderableType:
@@ -147,21 +226,38 @@ def _place(found: Comparison) -> Text:
     return place
 
 
-def together_text(found: Blame, first: BlamedAdvice, parameter: str | None) -> RenderableType:
-    """What all marks of a mission say of its first suspect, or of the one that is asked about."""
-    accused, tried = first.accused, first.remedy
-    said = f"{percent(accused.probability)} that it is {accused.parameter}"
-    verdict = found.text if parameter is None else said
+def print_suggestions(console: Console, found: Diagnosis, parameter: str | None) -> None:
+    """Print what all marks of a mission say: the verdict, and what to try for each suspect.
+
+    With ``parameter``, only that one is shown, however likely it is.
+    """
+    parts: list[RenderableType] = [Text(found.blame.title, style="bold")]
+    shown = found.shown if parameter is None else found.advice
+    if parameter is None:
+        parts.append(_verdict(found))
+        parts += [_indented(Text(plain(note), style="yellow")) for note in found.blame.notes]
+    parts += [_indented(_suggested(found, one)) for one in shown]
+    if parameter is None and found.folded_text:
+        parts.append(_indented(Text(found.folded_text, style="dim")))
+    console.print(Padding(Group(*parts), (0, 0, 1, 0), expand=False), highlight=False)
+
+
+def _suggested(found: Diagnosis, one: BlamedAdvice) -> RenderableType:
+    accused, tried = one.accused, one.remedy
     line = Text(f"{accused.position}  ")
+    style = "bold" if one is found.to_try else ""
     if tried.value is None:
         line.append(plain(f"{tried.parameter}: {tried.reason}"), style="dim")
     else:
-        line.append(plain(tried.text), style="bold")
-    parts = [Text(plain(verdict)), line, _place_line(accused.comparison)]
-    if first.what_if is not None:
-        parts.append(Text(plain(f"   {first.what_if.text}")))
-    title = Text(found.title, style="bold")
-    return Padding(Group(title, *map(_indented, parts)), (0, 0, 1, 0), expand=False)
+        line.append(plain(tried.text), style=style)
+    lines = [line, Text(f"   {percent(accused.probability)} that it is this one", style=style)]
+    lines.append(_place_line(accused.comparison))
+    if one.what_if is not None:
+        lines.append(Text(plain(f"   {one.what_if.text}")))
+    smallest = tried.smallest
+    if smallest is not None and smallest.value not in {None, tried.value}:
+        lines.append(Text(plain(f"   the smallest change: {smallest.text}")))
+    return Group(*lines)
 
 
 def group_text(group: MarkGroup, recording: Recording, parameter: str | None) -> RenderableType:

@@ -13,10 +13,10 @@ from typing import NamedTuple
 from rich.cells import cell_len
 from rich.text import Text
 
-from pytpc.base.wording import exact, many, plain
+from pytpc.base.wording import many, plain, show
 from pytpc.diagnosis.results.live import Kept, LiveRow, Look, TrendPart
 from pytpc.recording.marking_session import Session, View, clock_text, cut, folded
-from pytpc.recording.marks import Mark, MarkType
+from pytpc.recording.marks import Mark, MarkType, short_note
 
 Layout = tuple[MarkType | None, ...]
 LAYOUTS: tuple[Layout, ...] = (("I", "II"), (None,), ("I",), ("II",))
@@ -39,9 +39,16 @@ _LEAST_NAME = 12
 _RECENT_S = 3.0
 _BARS = {True: "▁▂▃▄▅▆▇█", False: "_.-=+*%#"}
 _FLOP = "x"
+_TREND = "Trend"
 _WIDEST_NOW = 24
+_FEWEST_DIGITS = 3
+_ALL_DIGITS = 17
 _ROOMY = 20
-_LEGEND = "Trend of the window: a low bar is near the threshold, an x is a flop. Bold: just flopped"
+_LEGEND = (
+    "Trend of the window: a low bar is near the threshold, an x is a flop (the result changed)."
+    " Bold: just flopped. A low score is suspicious"
+)
+_SHORT_LEGEND = "Bold: the result has just changed. A low score is suspicious"
 
 
 class WatchOptions(NamedTuple):
@@ -55,11 +62,12 @@ class WatchOptions(NamedTuple):
 
 
 class Status(NamedTuple):
-    """What has arrived: reports, reports per second (None for a recording), nodes, unknown keys,
-    lost messages, reports too late to count, and the fault (empty if there is none).
+    """What has arrived: evaluations, also those of summaries, and how many per second (None for a
+    recording), nodes, unknown keys, lost messages, evaluations too late to count, and the fault
+    (empty if there is none).
     """
 
-    reports: int = 0
+    evaluations: int = 0
     rate: float | None = None
     nodes: int = 0
     unknown: int = 0
@@ -69,7 +77,7 @@ class Status(NamedTuple):
 
     def words(self) -> str:
         """One line; the fault comes first."""
-        text = f"{many(self.reports, 'report')} of {many(self.nodes, 'node')}"
+        text = f"{many(self.evaluations, 'evaluation')} of {many(self.nodes, 'node')}"
         if self.rate is not None:
             text += f", {self.rate:,.0f}/s"
         if self.lost:
@@ -115,12 +123,14 @@ def watch_screen(session: Session, view: View, panel: Panel, width: int, height:
         head.append(Text())
     room = height - len(head) - len(foot)
     layout = panel.options.layout
-    stacked = len(layout) > 1 and width < 2 * _LEAST_SIDE + _BETWEEN
+    stacked = panel.options.back is None and _is_stacked(layout, width)
     marks = min(len(session.marks), max(0, room // 4))
     body = _body(panel, view, width, room - (marks + 1 if marks else 0), stacked)
     tail = _marks(session, view, panel, width, room - len(body)) if marks else []
     left = room - len(body) - len(tail)
-    more = _evidence(_shown_look(panel), width) if marks or not session.marks else []
+    more = (
+        _evidence(_shown_look(panel), width, stacked=stacked) if marks or not session.marks else []
+    )
     more = more if len(more) <= left else []
     blank = [Text()] * max(0, left - len(more))
     lines = [*head, *body, *more, *blank, *tail, *foot]
@@ -163,10 +173,28 @@ def _shown_look(panel: Panel) -> tuple[Look, Layout]:
     return look, tuple(look.rows)
 
 
-def _evidence(shown: tuple[Look, Layout], width: int) -> list[Text]:
-    """Where the first suspect of each table is compared, and how to read the bars."""
+def _is_stacked(layout: Layout, width: int) -> bool:
+    """Whether the tables stand below one another."""
+    return len(layout) > 1 and width < 2 * _LEAST_SIDE + _BETWEEN
+
+
+def _side(layout: Layout, width: int, *, stacked: bool) -> int:
+    """The width of each table."""
+    return width if stacked else (width - _BETWEEN * (len(layout) - 1)) // len(layout)
+
+
+def _evidence(shown: tuple[Look, Layout], width: int, *, stacked: bool) -> list[Text]:
+    """Where the first suspect of each table is compared, and how to read what is shown of it."""
     look, layout = shown
-    lines = [Text(), Text(cut(_LEGEND, width), style="dim"), Text()]
+    side = _side(layout, width, stacked=stacked)
+    tables = [(kind, look.rows[kind]) for kind in layout if look.rows[kind]]
+    has_bars = any(
+        column.heading == _TREND
+        for kind, rows in tables
+        for column in _columns(kind, side, rows)[0]
+    )
+    legend = _LEGEND if has_bars else _SHORT_LEGEND
+    lines = [Text(), Text(cut(legend, width), style="dim"), Text()]
     for row in (look.rows[kind][0] for kind in layout if look.rows[kind]):
         found = row.suspect.comparison
         line = Text(f"{row.suspect.position} {row.suspect.parameter}", style="bold")
@@ -187,7 +215,6 @@ def _body(panel: Panel, view: View, width: int, room: int, stacked: bool) -> lis
     lines: list[Text] = []
     if options.back is not None:
         kept = panel.kept[options.back]
-        stacked = False
         when = clock_text(kept.mark.time_ns - view.start_ns)
         text = f"At the mark of {when} ({_named(kept.mark)}); m goes on"
         lines.append(Text(cut(text, width), style="bold reverse"))
@@ -199,7 +226,7 @@ def _body(panel: Panel, view: View, width: int, room: int, stacked: bool) -> lis
             lines += table(look, kind, width, rows, utf8=options.utf8)
         return lines[: max(0, room + 1)]
     rows = max(1, min(options.top, room - 2))
-    side = (width - _BETWEEN * (len(layout) - 1)) // len(layout)
+    side = _side(layout, width, stacked=stacked)
     sides = [table(look, kind, side, rows, utf8=options.utf8) for kind in layout]
     for number in range(max(len(one) for one in sides)):
         line = Text()
@@ -228,7 +255,7 @@ def _marks(session: Session, view: View, panel: Panel, width: int, room: int) ->
 
 
 def _note(mark: Mark) -> str:
-    return f'  "{mark.note}"' if mark.note else ""
+    return f'  "{short_note(mark.note)}"' if mark.note else ""
 
 
 def _named(mark: Mark) -> str:
@@ -250,7 +277,7 @@ def _columns(
     longest = max(cell_len(plain(row.suspect.parameter)) for row in rows)
     score = _Column("Score", 6, True, 1, lambda row, _: score_text(row.suspect.score))
     now = _Column("Now", _now_width(rows), False, 2, lambda row, _: _now(row))
-    parts = _Column("Trend", len(rows[0].parts), False, 3, lambda row, utf8: bars(row.parts, utf8))
+    parts = _Column(_TREND, len(rows[0].parts), False, 3, lambda row, utf8: bars(row.parts, utf8))
     flop = _Column("Flop", 6, True, 4, lambda row, _: ago(row.flop_s))
     of = _Column("By", 2, False, 5, lambda row, _: row.suspect.type)
     if kind == "I":
@@ -272,10 +299,12 @@ def _now(row: LiveRow) -> str:
     if relation == "flag":
         return "on" if row.last.result else "off"
     cmp, thresh = row.last.cmp, row.last.thresh
-    left, right = f"{cmp:.3g}", f"{thresh:.3g}"
+    left, right = f"{cmp:.{_FEWEST_DIGITS}g}", show(thresh)
     # Different numbers must not look equal.
-    if left == right and cmp != thresh:
-        left, right = exact(cmp), exact(thresh)
+    digits = _FEWEST_DIGITS
+    while left == right and cmp != thresh and digits < _ALL_DIGITS:
+        digits += 1
+        left, right = f"{cmp:.{digits}g}", f"{thresh:.{digits}g}"
     return f"{left} {relation} {right}"
 
 

@@ -11,7 +11,8 @@ from typing import TypeVar
 
 from pytpc.base.errors import InputError
 from pytpc.python_analysis.budget import SECONDS, Budget, BudgetSpentError, what_failed
-from pytpc.python_analysis.comparisons.follow import FLAG, Follower
+from pytpc.python_analysis.comparisons.facts import FLAG
+from pytpc.python_analysis.comparisons.follow import Follower
 from pytpc.python_analysis.comparisons.gather import (
     Found,
     Gatherer,

@@ -21,6 +21,36 @@ class Argument:
 
 
 @dataclass(frozen=True)
+class ReadRule:
+    """A call that reads a parameter: its arguments for the name and the default.
+
+    ``callback``: the value is not its result, but what this callback gets. ``node``: the argument
+    that names the node whose parameter it is. ``separator``: the result is a table of the
+    parameters whose names begin with the name and this. ``is_object``: the value of the parameter
+    is an attribute of the result (``values``).
+    """
+
+    name: Argument
+    default: Argument
+    callback: Argument = Argument(None)
+    node: Argument = Argument(None)
+    separator: str = ""
+    is_object: bool = False
+
+
+@dataclass(frozen=True)
+class ListRule:
+    """A call that returns parameter objects, or passes a list of them to ``callback``.
+
+    ``names`` is the argument with their names, which ``namespace`` comes before.
+    """
+
+    names: Argument
+    callback: Argument
+    namespace: Argument = Argument(None)
+
+
+@dataclass(frozen=True)
 class ConfigRule:
     """A call whose ``callback`` gets an object of parameters as its argument number ``config``.
 
@@ -51,21 +81,27 @@ class LibraryComparison:
 class Rules:
     """The tables by dotted name; see ``rules/python.json``.
 
-    ``reads``: the arguments for the name and the default. ``arithmetic``: the name of an operation.
-    ``lists``: the argument with the names of the returned parameters, and the one with the callback
-    that gets a list of parameters. ``values``: attributes and methods that give the value of a
-    parameter object, and their factor.
+    ``arithmetic``: the name of an operation; ``units``: the factor of an argument with a keyword.
+    ``values``: attributes and methods that give the value of a parameter object, and their factor.
+    ``services``: the callbacks whose results are exposed; ``overriding``: the same for the methods
+    of a program's classes, by the class that they are derived from. ``hands``: a callback, and the
+    class of the object that it gets. ``tidy``: classes whose methods neither keep what they get nor
+    return what others got.
     """
 
     profile: str
     constants: bool = False
-    reads: dict[str, tuple[Argument, Argument]] = field(default_factory=dict)
+    reads: dict[str, ReadRule] = field(default_factory=dict)
     exposing: set[str] = field(default_factory=set)
     topics: dict[str, Argument] = field(default_factory=dict)
     makes: dict[str, str] = field(default_factory=dict)
     configs: dict[str, ConfigRule] = field(default_factory=dict)
-    services: dict[str, Argument] = field(default_factory=dict)
-    lists: dict[str, tuple[Argument, Argument]] = field(default_factory=dict)
+    services: dict[str, list[Argument]] = field(default_factory=dict)
+    overriding: dict[str, list[str]] = field(default_factory=dict)
+    hands: dict[str, list[tuple[Argument, str]]] = field(default_factory=dict)
+    lists: dict[str, ListRule] = field(default_factory=dict)
+    tidy: set[str] = field(default_factory=set)
+    units: dict[str, float] = field(default_factory=dict)
     values: dict[str, float] = field(default_factory=dict)
     comparisons: dict[str, LibraryComparison] = field(default_factory=dict)
     waiting: set[str] = field(default_factory=set)
@@ -82,8 +118,12 @@ class Rules:
     @property
     def paths(self) -> list[str]:
         """All dotted names in the tables."""
-        tables = (self.reads, self.topics, self.makes, self.configs, self.services, self.lists)
+        tables = (
+            *(self.reads, self.topics, self.makes, self.configs),
+            *(self.services, self.hands, self.lists),
+        )
         named = [name for table in tables for name in table]
+        named += [kind for rows in self.hands.values() for _, kind in rows]
         return [*named, *self.exposing, *self.makes.values()]
 
     def class_of(self, path: str) -> str:
@@ -113,7 +153,7 @@ def _add(rules: Rules, name: str, table: Any) -> None:  # noqa: ANN401
     match name:
         case "$schema" | "schema" | "comment":
             pass
-        case "arithmetic" | "waiting" | "outcomes" | "filters":
+        case "arithmetic" | "waiting" | "outcomes" | "filters" | "tidy" | "units":
             getattr(rules, name).update(table)
         case _:
             for row in table:
@@ -125,9 +165,14 @@ def _add_row(rules: Rules, name: str, row: dict[str, Any]) -> None:
     function = row.get("function", "")
     match name:
         case "reads":
-            given = Argument(row.get("name"), row.get("name_keyword"))
-            default = Argument(row.get("default"), row.get("default_keyword"))
-            rules.reads[function] = (given, default)
+            rules.reads[function] = ReadRule(
+                Argument(row.get("name"), row.get("name_keyword")),
+                Argument(row.get("default"), row.get("default_keyword")),
+                Argument(row.get("callback"), row.get("keyword")),
+                Argument(row.get("node"), row.get("node_keyword")),
+                row.get("separator", ""),
+                row.get("object", False),
+            )
         case "exposing":
             rules.exposing.add(function)
         case "topics":
@@ -142,10 +187,19 @@ def _add_row(rules: Rules, name: str, row: dict[str, Any]) -> None:
                 row.get("private", False),
             )
         case "services":
-            rules.services[function] = Argument(row["callback"], row.get("keyword"))
+            given = Argument(row.get("callback"), row.get("keyword"))
+            rules.services.setdefault(function, []).append(given)
+        case "overriding":
+            rules.overriding.setdefault(row["class"], []).extend(row["methods"])
+        case "hands":
+            given = Argument(row.get("callback"), row.get("keyword"))
+            rules.hands.setdefault(function, []).append((given, row["class"]))
         case "lists":
-            names = Argument(row.get("names"), row.get("names_keyword"))
-            rules.lists[function] = (names, Argument(row.get("callback"), row.get("keyword")))
+            rules.lists[function] = ListRule(
+                Argument(row.get("names"), row.get("names_keyword")),
+                Argument(row.get("callback"), row.get("keyword")),
+                Argument(row.get("namespace"), row.get("namespace_keyword")),
+            )
         case "comparisons":
             rules.comparisons[function] = LibraryComparison(
                 row.get("relation"), row.get("chooses"), row.get("within")

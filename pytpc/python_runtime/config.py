@@ -91,3 +91,15 @@ def of_environment() -> Config:
         else:
             config = config._replace(**change)
     return config
+
+
+def text_of(name: str, value: object) -> str | None:
+    """The value of a ROS parameter as text; None if no setting has its type.
+
+    YAML reads `off` as false.
+    """
+    if isinstance(value, bool):
+        return "off" if name == "sink" and not value else None
+    if isinstance(value, (str, int)):
+        return str(value)
+    return repr(value) if isinstance(value, float) else None

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from types import CodeType, ModuleType
 from typing import Any
 
-from pytpc.python_runtime import quiet
+from pytpc.python_runtime import quiet, ros2_state
 from pytpc.python_runtime.errors import warn
 from pytpc.python_runtime.instrument import Instrument
 from pytpc.python_runtime.listed import ListedFile
@@ -50,6 +50,8 @@ class ReportingFinder:
         """The spec of another finder, with our loader if the module may have comparisons."""
         if fullname in quiet.TRACERS:
             quiet.watch()
+        if fullname == ros2_state.MODULE:
+            return _with_nodes(self._other(fullname, path, target))
         if fullname.rpartition(".")[2] not in self._names:
             return None
         spec = self._other(fullname, path, target)
@@ -84,6 +86,24 @@ class ReportingFinder:
         return None
 
 
+def _with_nodes(
+    spec: importlib.machinery.ModuleSpec | None,
+) -> importlib.machinery.ModuleSpec | None:
+    """Let ``ros2_state`` watch the module once it is loaded, by the loader that it has."""
+    loader: Any = None if spec is None else spec.loader
+    load = getattr(loader, "exec_module", None)
+    if load is None:
+        return spec
+
+    def exec_module(module: ModuleType) -> None:
+        del loader.exec_module
+        load(module)
+        ros2_state.watch(module)
+
+    loader.exec_module = exec_module
+    return spec
+
+
 def _module_names(by_name: dict[str, list[ListedFile]]) -> set[str]:
     """The last parts of the names of modules that may have comparisons."""
     names = set()
@@ -99,4 +119,5 @@ def _module_names(by_name: dict[str, list[ListedFile]]) -> set[str]:
 def install(instrument: Instrument) -> None:
     """Let modules report that are imported from now on."""
     quiet.watch_if_traced()
+    ros2_state.watch_if_imported()
     sys.meta_path.insert(0, ReportingFinder(instrument))

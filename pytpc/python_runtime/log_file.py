@@ -364,6 +364,12 @@ class LogFile(MappedFile):
             _, steady, real = min(_both_clocks() for _ in range(4))
             self._integers(SYNC, 0, steady, real, known.ros_ns)
 
+    def look_again(self) -> None:
+        """Look at once: the program has just made its node."""
+        with self._lock:
+            self._sync_at = 0
+            self.look(monotonic_ns())
+
     def _write_nested(self) -> None:
         nested, self._nested = self._nested, 0
         if nested:

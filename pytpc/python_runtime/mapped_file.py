@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import _thread
 import contextlib
+import errno
 import mmap
 import os
+import stat
 import struct
 import sys
 import threading
@@ -207,15 +209,48 @@ def _program() -> str:
     return os.path.abspath(script) if isinstance(script, str) else sys.executable or "python"
 
 
+def _home() -> str:
+    """The folder in the user's home; empty without one."""
+    home = os.environ.get("HOME")
+    ros_home = os.environ.get("ROS_HOME") or (home and os.path.join(home, ".ros"))
+    return os.path.join(ros_home, "tpc") if ros_home else ""
+
+
+def _make_folders(folder: str) -> None:
+    """Make a folder and those above it, for this user alone (``makedirs`` does so for the last)."""
+    above = os.path.dirname(folder.rstrip("/"))
+    if above and not os.path.isdir(above):
+        _make_folders(above)
+    os.makedirs(folder, mode=0o700, exist_ok=True)
+
+
+def _private_folder(folder: str) -> str:
+    """Make a folder in /tmp, where anybody can make one of the same name first.
+
+    Raises:
+        OSError: it is not a folder of this user alone.
+    """
+    with contextlib.suppress(FileExistsError):
+        os.mkdir(folder, 0o700)
+    status = os.lstat(folder)
+    is_own = stat.S_ISDIR(status.st_mode) and status.st_uid == os.geteuid()
+    if not is_own or status.st_mode & 0o077:
+        what = "not a folder of this user alone; set TPC_FOLDER or HOME"
+        raise PermissionError(errno.EPERM, what, folder)
+    return folder
+
+
 def _created(config: Config, node: str) -> tuple[str, int]:
     """The path of a new file, and a descriptor of that path with ``.new`` added.
 
     The file gets its name when it can be read. Until then ``.new`` keeps processes of other
     containers, which may have the same number and so the same names, from using it.
     """
-    home = os.environ.get("ROS_HOME") or os.path.join(os.environ.get("HOME") or "/tmp", ".ros")
-    folder = config.folder or os.path.join(home, "tpc")
-    os.makedirs(folder, exist_ok=True)
+    folder = config.folder or _home()
+    if folder:
+        _make_folders(folder)
+    else:
+        folder = _private_folder(f"/tmp/tpc-{os.geteuid()}")
     name = (node or os.path.basename(_program())).lstrip("/")
     name = "".join(c if c.isascii() and (c.isalnum() or c in "_-") else "_" for c in name)[:100]
     stem = os.path.join(folder, f"{name or 'process'}-{os.getpid()}-{time_ns() // SECOND}")
@@ -223,7 +258,7 @@ def _created(config: Config, node: str) -> tuple[str, int]:
         path = f"{stem}-{number}.tpc" if number > 1 else f"{stem}.tpc"
         flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC
         try:
-            descriptor = os.open(f"{path}.new", flags, 0o666)
+            descriptor = os.open(f"{path}.new", flags, 0o600)
         except FileExistsError:
             continue
         if not os.path.exists(path):

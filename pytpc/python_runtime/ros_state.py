@@ -1,10 +1,11 @@
-"""The state of rospy, if the program has imported it; this module never imports it."""
+"""The node of this process and its ROS time, under the ROS that the program has imported."""
 
 from __future__ import annotations
 
 import sys
-from time import time_ns
-from typing import Any, NamedTuple
+from typing import NamedTuple
+
+from pytpc.python_runtime import ros1_state, ros2_state
 
 
 class Now(NamedTuple):
@@ -18,43 +19,26 @@ class Now(NamedTuple):
 _UNKNOWN = Now("", 0, False)
 
 
-def rospy() -> Any:  # noqa: ANN401
-    """The module, once the program has initialised a node; else None."""
-    module = sys.modules.get("rospy")
-    core = sys.modules.get("rospy.core")
-    try:
-        return module if core is not None and core.is_initialized() else None
-    except AttributeError:
-        # It is still being imported.
-        return None
+def is_ros2() -> bool:
+    """Whether reports go the way of ROS 2: the program has imported rclpy, and not rospy."""
+    if ros2_state.has_node():
+        return ros1_state.rospy() is None
+    return "rclpy" in sys.modules and "rospy" not in sys.modules
 
 
-def is_imported() -> bool:
-    """Whether the program may have a node yet."""
-    return "rospy" in sys.modules
+def has_node() -> bool:
+    """Whether the program has made a node."""
+    return ros2_state.has_node() or ros1_state.rospy() is not None
 
 
 def time_now_ns() -> int:
     """The node's time where it is simulated, else the wall clock's."""
-    rostime = sys.modules.get("rospy.rostime")
-    try:
-        if rostime is None or rostime.is_wallclock():
-            return time_ns()
-    except Exception:
-        # It is still being imported, or has no time yet.
-        return time_ns()
-    return now().ros_ns
+    return ros2_state.time_now_ns() if ros2_state.has_node() else ros1_state.time_now_ns()
 
 
 def now() -> Now:
     """The node, and its time in ns."""
-    ros = rospy()
-    if ros is None:
-        return _UNKNOWN
-    try:
-        rostime = sys.modules["rospy.rostime"]
-        simulated = not rostime.is_wallclock()
-        return Now(str(ros.get_name()), int(ros.get_rostime().to_nsec()), simulated)
-    except Exception:
-        # Its time is not initialised yet, or it is shut down.
-        return _UNKNOWN
+    if ros1_state.rospy() is None and ros2_state.has_node():
+        return Now(ros2_state.name(), ros2_state.time_now_ns(), ros2_state.is_simulated())
+    known = ros1_state.now()
+    return _UNKNOWN if known is None else Now(*known)

@@ -2,8 +2,9 @@
 
 Nothing happens until the first report. If the program has imported rospy, one helper thread then
 waits for its node, applies its parameters, and sends what the sinks keep. For the sink ``file``
-this thread then ends: the first report of each second does the periodic work. After a fork the
-child keeps the settings and begins a file of its own.
+this thread then ends: the first report of each second does the periodic work. With a node of rclpy
+another thread does this until the end (``ros2_helper``). After a fork the child keeps the settings
+and begins a file of its own.
 """
 
 from __future__ import annotations
@@ -15,21 +16,32 @@ import threading
 import time
 from typing import TYPE_CHECKING
 
-from pytpc.python_runtime import ros_state, sites
+from pytpc.python_runtime import ros1_state, ros2_sinks, ros2_state, ros_state, sites
 from pytpc.python_runtime.config import Config, of_environment
-from pytpc.python_runtime.control import Control
 from pytpc.python_runtime.errors import warn
 from pytpc.python_runtime.light import Light
 from pytpc.python_runtime.log_file import LogFile
 from pytpc.python_runtime.policies import Caps, Edges
-from pytpc.python_runtime.ros_sinks import AutoSink, RosoutSink, TopicSink
+from pytpc.python_runtime.ros1_control import Control
+from pytpc.python_runtime.ros1_sinks import AutoSink, RosoutSink, TopicSink
+from pytpc.python_runtime.ros2_helper import Helper
 from pytpc.python_runtime.sinks import FileSink, Sink
 from pytpc.python_runtime.sites import Reported
+from pytpc.python_runtime.waiting import WaitingSink
 
 if TYPE_CHECKING:
     from pytpc.python_runtime.find import ListedPlace
+    from pytpc.python_runtime.ros2_link import Link
 
 _LATE_S = 0.25
+
+
+_OF_ROS1 = {"auto": AutoSink, "rosout": RosoutSink, "topic": TopicSink}
+_OF_ROS2 = {
+    "auto": ros2_sinks.AutoSink,
+    "rosout": ros2_sinks.RosoutSink,
+    "topic": ros2_sinks.TopicSink,
+}
 
 
 class Runtime:
@@ -45,11 +57,13 @@ class Runtime:
         self._was_node = False
         self._has_helper = False
         self._is_served = False
+        self._ros2: Helper | None = None
         self._sink = Sink()
         self._caps = Caps(Config(), self._sink)
         self._edges: Edges | Light | None = None
         self.file: LogFile | None = None
         sites.set_take(self._first)
+        ros2_state.tell(self._node_came)
         # Handlers run in the reverse order of their registration: this one is among the last.
         atexit.register(self.end)
         os.register_at_fork(
@@ -104,7 +118,9 @@ class Runtime:
                 self._is_started = True
             finally:
                 self._is_starting = False
-            if ros_state.is_imported() and not self._is_served and not self._has_helper:
+            if ros2_state.has_node():
+                self._begin_ros2()
+            elif ros1_state.is_imported() and not self._is_served and not self._has_helper:
                 self._start_helper()
 
     def apply(self, config: Config) -> bool:
@@ -116,7 +132,9 @@ class Runtime:
             if not self._choose(config):
                 return False
             self._config = config
-            if self._sink.is_polled and not self._has_helper and not self._was_node:
+            if self._ros2 is not None:
+                self._ros2.wake()
+            elif self._sink.is_polled and not self._has_helper and not self._was_node:
                 self._start_helper()
             return True
 
@@ -128,6 +146,8 @@ class Runtime:
         if sink is None:
             return False
         former, self._sink = self._sink, sink
+        if isinstance(former, WaitingSink) and isinstance(sink, WaitingSink) and former is not sink:
+            sink.take_over(former)
         if former is not sink and not isinstance(former, FileSink):
             former.end()
         self._caps = Caps(config, sink)
@@ -157,15 +177,19 @@ class Runtime:
             self.file = None
         if config.sink == "off":
             return Sink()
+        is_ros2 = ros_state.is_ros2()
         if self._was_node:
-            topic = "/rosout" if config.sink != "topic" else "/threshold_information"
+            is_rosout = config.sink == "rosout" or (config.sink == "auto" and not is_ros2)
+            topic = "/rosout" if is_rosout else "/threshold_information"
             warn(
                 f"process {os.getpid()} was forked from a node: its reports do not reach {topic};"
                 " the sink file records them"
             )
             return Sink()
-        kinds = {"auto": AutoSink, "rosout": RosoutSink, "topic": TopicSink}
-        kind = kinds[config.sink]
+        if is_ros2:
+            kind2 = _OF_ROS2[config.sink]
+            return self._sink if type(self._sink) is kind2 else kind2(self._link)
+        kind = _OF_ROS1[config.sink]
         return self._sink if type(self._sink) is kind else kind()
 
     def _file_sink(self, config: Config) -> Sink | None:
@@ -191,7 +215,7 @@ class Runtime:
 
     def _look(self) -> None:
         """Once a second, in a report to the file: start the helper if rospy is imported by now."""
-        if not self._has_helper and not self._is_served and ros_state.is_imported():
+        if not self._has_helper and not self._is_served and ros1_state.is_imported():
             self._start_helper()
 
     # --- the helper thread
@@ -209,7 +233,7 @@ class Runtime:
         process = os.getpid()
         retry_at = 0.0
         while self._has_helper and os.getpid() == process:
-            ros = ros_state.rospy()
+            ros = ros1_state.rospy()
             if ros is not None and not self._is_served and time.monotonic() >= retry_at:
                 try:
                     Control(self, ros).begin()
@@ -218,16 +242,63 @@ class Runtime:
                     retry_at = time.monotonic() + 2.0
                     if not ros.is_shutdown():
                         warn(f"the settings of {ros.get_name()} cannot be read yet: {error}")
-            sink, edges = self._sink, self._edges
-            has_periods = edges is not None and (self.file is None or isinstance(edges, Light))
-            is_busy = sink.is_polled or has_periods
-            if self._is_served and not is_busy:
+            wait_s = self.poll()
+            if self._is_served and wait_s is None:
                 break
-            if edges is not None and has_periods:
-                edges.flush(all_of_them=False)
-            sink.poll()
-            time.sleep(sink.poll_s if is_busy or ros is not None else _LATE_S)
+            is_late = wait_s is None and ros is None
+            time.sleep(_LATE_S if is_late else self._sink.poll_s)
         self._has_helper = False
+
+    def poll(self) -> float | None:
+        """Let policy and sink do what is due; the seconds until the next time, None for never."""
+        sink, edges = self._sink, self._edges
+        has_periods = edges is not None and (self.file is None or isinstance(edges, Light))
+        if edges is not None and has_periods:
+            edges.flush(all_of_them=False)
+        sink.poll()
+        return sink.poll_s if sink.is_polled or has_periods else None
+
+    # --- ROS 2
+
+    def _link(self) -> Link | None:
+        return None if self._ros2 is None else self._ros2.link
+
+    def _node_came(self) -> None:
+        """The program has made a node of rclpy."""
+        with self._lock:
+            if not self._is_started:
+                return
+            if self.file is not None:
+                self.file.look_again()
+            self._begin_ros2()
+
+    def _begin_ros2(self) -> None:
+        """Use the graph from now on: by the sinks of ROS 2, and a thread."""
+        if self._ros2 is not None or self._was_node:
+            return
+        self._ros2 = Helper(self)
+        if self._config is not None:
+            self._choose(self._config)
+        if not self._ros2.start():
+            warn("cannot start a thread: settings cannot be changed while the node runs")
+
+    def fall_back(self, why: str) -> None:
+        """The graph cannot be used: write a file from now on, with what waits for the graph."""
+        with self._lock:
+            former, config = self._sink, self.config.filled_in()
+            if not isinstance(former, WaitingSink):
+                warn(f"ROS 2 cannot be used, so settings cannot be changed: {why}")
+                return
+            waiting = former.drain()
+            if not self._choose(config._replace(sink="file")) or self.file is None:
+                return
+            self._config = config._replace(sink="file")
+            take = self._sink.edge if config.policy != "every" else self._sink.take
+            for one in waiting:
+                if one.one is not None and one.report is not None:
+                    take(one.one, *one.report)
+            folder = os.path.dirname(self.file.path)
+            warn(f"ROS 2 cannot be used, so reports are written to files in {folder}: {why}")
 
     def status(self) -> str:
         """The settings in effect as ``name=value`` words, as C++ nodes answer."""
@@ -249,7 +320,14 @@ class Runtime:
         with self._lock:
             self._has_helper = False
             self._flush()
+            helper, sink = self._ros2, self._sink
+        if helper is not None:
+            helper.end(send=sink.wants_to_send())
+            sink.is_last = True
+        with self._lock:
             self._sink.end()
+        if helper is not None:
+            helper.close()
 
     # --- fork
 
@@ -265,7 +343,10 @@ class Runtime:
         if self.file is not None:
             # Never unmapped: its descriptors may belong to other files by now.
             _FORMER.append(self.file)
-        self._was_node = self._was_node or ros_state.rospy() is not None
+        self._was_node = self._was_node or ros_state.has_node()
+        if self._ros2 is not None:
+            _FORMER.append(self._ros2)
+        self._ros2 = None
         if self._is_started:
             self._parent = os.getppid()
         self.file = None
@@ -283,6 +364,7 @@ class Runtime:
         sites.set_take(self._first)
 
 
-_FORMER: list[LogFile] = []
+# What only the parent may close.
+_FORMER: list[LogFile | Helper] = []
 
 RUNTIME = Runtime()

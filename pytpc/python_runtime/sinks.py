@@ -105,6 +105,8 @@ class Sink:
 
     # Whether the helper thread calls `poll`.
     is_polled = False
+    # Whether the process ends.
+    is_last = False
     poll_s = 0.02
 
     def __init__(self) -> None:
@@ -129,6 +131,10 @@ class Sink:
 
     def poll(self) -> None:
         """Called by the helper thread some fifty times a second."""
+
+    def wants_to_send(self) -> bool:
+        """Whether something waits for a subscriber, who may be there."""
+        return False
 
     def status(self) -> str:
         """Information for people: words with ``=`` in them."""

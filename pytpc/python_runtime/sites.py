@@ -81,6 +81,7 @@ _PLAIN = frozenset(
     {int, float, bool, str, bytes, type(None), list, tuple, dict, set, frozenset, complex, range}
 )
 _DURATIONS = frozenset({"genpy.rostime", "rospy.rostime"})
+_DURATIONS_OF_RCLPY = frozenset({"rclpy.time", "rclpy.duration"})
 
 
 def nothing(_reported: Reported, _result: bool, _cmp: float, _thresh: float, _res: bool) -> None:
@@ -138,6 +139,8 @@ def _number_of(value: Any, kind: type) -> float | None:  # noqa: ANN401
         found = float(value) if is_scalar else None
     elif kind.__module__ in _DURATIONS:
         found = float(value.secs) + value.nsecs * 1e-9
+    elif kind.__module__ in _DURATIONS_OF_RCLPY:
+        found = value.nanoseconds * 1e-9
     return found
 
 

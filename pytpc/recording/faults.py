@@ -42,7 +42,9 @@ def faults_of(recording: Recording, static_info: StaticInfo | None = None) -> It
             f"{many(sum(recording.lost.values()), 'log message')} lost on the way to the"
             f" recorder, most of {worst} ({recording.lost[worst]:,})"
         )
-    if recording.malformed:
+    if recording.malformed and not recording.malformed_first:
+        yield f"{many(recording.malformed, 'broken report')} left out"
+    elif recording.malformed:
         first = recording.malformed_first[0]
         # Records of files say at which byte or line they stand.
         at = f" at {(first.time_ns - recording.start_ns) / 1e9:.3f} s" if first.time_ns else ""

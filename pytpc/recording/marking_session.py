@@ -14,7 +14,7 @@ from typing import NamedTuple
 from rich.cells import cell_len, set_cell_size
 
 from pytpc.base.wording import plain
-from pytpc.recording.marks import Mark, MarkType
+from pytpc.recording.marks import LONGEST_NOTE, Mark, MarkType
 
 MEANINGS: dict[MarkType | None, str] = {
     "I": "it did something it should not have",
@@ -22,7 +22,6 @@ MEANINGS: dict[MarkType | None, str] = {
     None: "something is wrong",
 }
 _KEYS: dict[str, MarkType | None] = {"1": "I", "2": "II", "3": None}
-_LONGEST_NOTE = 500
 SPEEDS = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
 _STEPS_NS = {"left": -5, "right": 5, "down": -60, "up": 60, ",": -1, ".": 1}
 
@@ -37,13 +36,14 @@ class MarkChange(NamedTuple):
 
     def apply(self, marks: Sequence[Mark]) -> tuple[Mark, ...]:
         """``marks`` with the change; a note restores its mark if that is gone."""
-        result = list(marks)
-        if self.before in result:
-            place = len(result) - 1 - result[::-1].index(self.before)
-            del result[place]
+        result = [mark for mark in marks if not self.is_about(mark)]
         if self.after is not None:
             result.append(self.after)
         return tuple(result)
+
+    def is_about(self, mark: Mark) -> bool:
+        """Whether it changes this mark, whatever its note: another file may have an older one."""
+        return self.before is not None and self.before.order() == mark.order()
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +123,7 @@ def _type(session: Session, text: str, key: str) -> tuple[Session, MarkChange | 
         return replace(session, typing=None, said=""), None
     if key == "backspace":
         return replace(session, typing=text[:-1]), None
-    if len(key) == 1 and key.isprintable() and len(text) < _LONGEST_NOTE:
+    if len(key) == 1 and key.isprintable() and len(text) < LONGEST_NOTE:
         return replace(session, typing=text + key), None
     return session, None
 

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import csv
 import io
+import re
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,6 +17,7 @@ from typing import Literal, get_args
 
 from pytpc.base.atomic import write_atomic
 from pytpc.base.errors import InputError
+from pytpc.base.regular_files import read_file
 
 MarkType = Literal["I", "II"]
 """``I``: the robot did something that it should not have; ``II``: it should do something and does
@@ -28,7 +31,13 @@ _TOPICS: dict[str, MarkType | None] = {
     "mark_no_action": "II",
     "mark_wrong": None,
 }
+LONGEST_NOTE = 500
+"""Characters that can be typed, and that are shown."""
+_MOST_KEPT = 10_000
 _HEADER = ["time_ns", "type", "observer", "note"]
+# A spreadsheet may have changed the commas; the reader of marks then says what is wrong.
+_BEGIN = re.compile(rb'(?:\xef\xbb\xbf)?"?time_ns"?\s*[,;\t]\s*"?type')
+_SNIFFED = 256
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +90,25 @@ def joined(marks: Iterable[Mark]) -> tuple[Mark, ...]:
     return tuple(sorted(found.values(), key=Mark.order))
 
 
+def marks_between(marks: Iterable[Mark], start_ns: int, end_ns: int) -> list[Mark]:
+    """The marks from ``start_ns`` to ``end_ns``."""
+    return [mark for mark in marks if start_ns <= mark.time_ns <= end_ns]
+
+
+def with_short_note(mark: Mark) -> Mark:
+    """The mark, with the beginning of its note if that is longer than anybody writes."""
+    return mark if len(mark.note) <= _MOST_KEPT else replace(mark, note=_kept(mark.note))
+
+
+def _kept(note: str) -> str:
+    return short_note(note, _MOST_KEPT)
+
+
+def short_note(note: str, most: int = LONGEST_NOTE) -> str:
+    """A note of at most so many characters."""
+    return note if len(note) <= most else f"{note[: most - 3]}..."
+
+
 def note_text(time_ns: int, note: str) -> str:
     """A note as it stands on ``mark_note``: ``SECONDS.NANOSECONDS,NOTE``."""
     return f"{time_ns // 10**9}.{time_ns % 10**9:09d},{note}"
@@ -105,9 +133,11 @@ class MarkMessages:
     """
 
     def __init__(self) -> None:
-        self._marks: list[Mark] = []
+        self._types: defaultdict[tuple[str, int], set[MarkType | None]] = defaultdict(set)
         self._undone: set[tuple[str, int]] = set()
         self._notes: dict[tuple[str, int], str] = {}
+        self.count = 0
+        """How many marks there are that were not undone."""
 
     @staticmethod
     def message_type(topic: str) -> Literal["Time", "String"] | None:
@@ -120,10 +150,17 @@ class MarkMessages:
     def add_time(self, topic: str, time_ns: int) -> None:
         """Take in a std_msgs/Time of a topic that ``message_type`` knows."""
         observer, last = _split(topic)
+        named = (observer, time_ns)
+        # A recorder counts at any time, and a robot may send millions.
+        before = self._count_of(named)
         if last == UNDO_TOPIC:
-            self._undone.add((observer, time_ns))
+            self._undone.add(named)
         else:
-            self._marks.append(Mark(time_ns, _TOPICS[last], observer))
+            self._types[named].add(_TOPICS[last])
+        self.count += self._count_of(named) - before
+
+    def _count_of(self, named: tuple[str, int]) -> int:
+        return 0 if named in self._undone else len(self._types.get(named, ()))
 
     def add_text(self, topic: str, text: str) -> None:
         """Take in a std_msgs/String of such a topic.
@@ -135,15 +172,17 @@ class MarkMessages:
         if found is None:
             raise ValueError("not a note: expected SECONDS.NANOSECONDS,NOTE")
         time_ns, note = found
-        self._notes[_split(topic)[0], time_ns] = note
+        self._notes[_split(topic)[0], time_ns] = _kept(note)
 
     def marks(self) -> tuple[Mark, ...]:
         """The marks that were not undone, with their last notes, sorted."""
-        kept = [mark for mark in self._marks if (mark.observer, mark.time_ns) not in self._undone]
-        noted = [
-            replace(mark, note=self._notes.get((mark.observer, mark.time_ns), "")) for mark in kept
+        found = [
+            Mark(time_ns, kind, observer, self._notes.get((observer, time_ns), ""))
+            for (observer, time_ns), kinds in self._types.items()
+            if (observer, time_ns) not in self._undone
+            for kind in kinds
         ]
-        return tuple(sorted(noted, key=Mark.order))
+        return tuple(sorted(found, key=Mark.order))
 
 
 def _split(topic: str) -> tuple[str, str]:
@@ -152,8 +191,24 @@ def _split(topic: str) -> tuple[str, str]:
     return observer.strip("/"), last
 
 
+def begins_marks(first: bytes) -> bool:
+    """Whether a file with these first bytes is one of marks."""
+    return _BEGIN.match(first) is not None
+
+
+def is_marks_file(path: Path) -> bool:
+    """Whether it is there and begins like a file of marks."""
+    try:
+        if not path.is_file():
+            return False
+        with path.open("rb") as stream:
+            return begins_marks(stream.read(_SNIFFED))
+    except OSError:
+        return False
+
+
 def marks_beside(recording: Path) -> Path:
-    """The file of marks that were made after the recording: ``BAG.marks.csv``."""
+    """The file beside a recording: ``BAG.marks.csv``. Use ``marks_home`` for all of its marks."""
     return recording.with_name(f"{recording.name}.marks.csv")
 
 
@@ -183,9 +238,7 @@ def read_marks(path: Path) -> tuple[Mark, ...]:
         InputError: it cannot be read, or a line is no mark.
     """
     try:
-        text = path.read_bytes().decode("utf-8-sig")
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror or error}", path) from error
+        text = read_file(path).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise InputError(f"not CSV: byte {error.start} is not UTF-8", path) from error
     reader = csv.reader(io.StringIO(text, newline=""))
@@ -210,4 +263,4 @@ def _mark(row: list[str]) -> Mark:
     if kind and kind not in MARK_TYPES:
         raise ValueError(f"{kind!r} is not a type of mark (I, II or nothing)")
     mark_type = next((known for known in MARK_TYPES if known == kind), None)
-    return Mark(int(time), mark_type, observer, note)
+    return Mark(int(time), mark_type, observer, _kept(note))

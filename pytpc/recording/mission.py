@@ -7,14 +7,21 @@ On disk it is a folder with ``events.parquet``, ``marks.json`` and, where there 
 from __future__ import annotations
 
 import json
+from collections import defaultdict
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError
 from pytpc.recording.events import Events
-from pytpc.recording.marks import MARK_TYPES, Mark
+from pytpc.recording.marks import MARK_TYPES, Mark, with_short_note
+from pytpc.recording.parameter_values import SetValue
 from pytpc.recording.summaries import Summaries
 
 EVENTS_FILE = "events.parquet"
@@ -23,7 +30,11 @@ MARKS_FILE = "marks.json"
 RUN_FILE = "run.json"
 REPORTS_FOLDER = "tpc"
 """A folder with this file is a recorded mission, and has its nodes' files in this folder."""
+ROS2_FILE = "metadata.yaml"
+"""A folder with this file is a bag of rosbag2."""
 _SCHEMA = 1
+_LARGEST_RUN = 16 << 20
+_LATEST = 2**63
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +92,8 @@ class Recording:
     ``lost`` has for each node how many of its log messages never reached the recorder.
     ``start_ns`` and ``end_ns`` are on the clock of the events. ``notes`` are sentences for the user
     about what was read and what was left out. ``dropped`` is what the processes themselves counted,
-    and ``names`` the full names of parameters that they reported, sorted.
+    and ``names`` the full names of parameters that they reported, sorted. ``values`` are those of
+    parameters over time, where they were recorded (ROS 2); ``ParameterValues`` looks them up.
     """
 
     name: str
@@ -96,11 +108,45 @@ class Recording:
     summaries: Summaries = field(default_factory=Summaries.empty)
     dropped: tuple[Dropped, ...] = ()
     names: tuple[ReadName, ...] = ()
+    values: tuple[SetValue, ...] = ()
+
+    @cached_property
+    def nodes_of(self) -> Mapping[str, frozenset[str]]:
+        """The nodes that evaluated each comparison, by key."""
+        found = defaultdict(set)
+        for table in (self.events, self.summaries):
+            seen = np.zeros((len(table.keys), len(table.nodes)), np.bool_)
+            seen[table.key, table.node] = True
+            for key, node in np.argwhere(seen).tolist():
+                found[table.keys[key]].add(table.nodes[node])
+        return {key: frozenset(nodes) for key, nodes in found.items()}
 
     @property
     def seconds(self) -> float:
         """How long the mission took."""
         return (self.end_ns - self.start_ns) / 1e9
+
+
+def is_converted(path: Path) -> bool:
+    """Whether ``pytpc convert`` wrote this folder."""
+    return (path / MARKS_FILE).is_file() and (path / EVENTS_FILE).is_file()
+
+
+def is_ros2_folder(path: Path) -> bool:
+    """Whether rosbag2 wrote this folder."""
+    return (path / ROS2_FILE).is_file()
+
+
+def read_run(folder: Path) -> dict[str, Any]:
+    """run.json of a mission's folder; empty if there is none that can be read."""
+    path = folder / RUN_FILE
+    try:
+        if not path.is_file() or path.stat().st_size > _LARGEST_RUN:
+            return {}
+        document = json.loads(path.read_bytes())
+    except (OSError, ValueError, RecursionError):
+        return {}
+    return document if isinstance(document, dict) else {}
 
 
 def save_recording(recording: Recording, folder: Path) -> None:
@@ -140,6 +186,7 @@ def write_marks_json(recording: Recording, folder: Path, events: int, summaries:
         ],
         "objects": [asdict(one) for one in recording.names if one.object],
         "notes": list(recording.notes),
+        "values": [one._asdict() for one in recording.values],
     }
     text = json.dumps(document, indent=1, sort_keys=True, ensure_ascii=False)
     write_atomic(folder / MARKS_FILE, text.encode("utf-8", "backslashreplace") + b"\n")
@@ -194,6 +241,8 @@ def _recording(document: object) -> tuple[Recording, int, int]:
     for mark in marks:
         if type(mark.time_ns) is not int or not isinstance(mark.observer, str):
             raise ValueError("a mark without a time in ns or an observer")
+        if not -_LATEST <= mark.time_ns < _LATEST:
+            raise ValueError(f"a mark at {mark.time_ns:.3g} ns")
         if not isinstance(mark.note, str):
             raise ValueError("a mark whose note is not text")
         if mark.type is not None and mark.type not in MARK_TYPES:
@@ -201,7 +250,7 @@ def _recording(document: object) -> tuple[Recording, int, int]:
     recording = Recording(
         name=str(document["name"]),
         events=Events.empty(),
-        marks=tuple(sorted(marks, key=Mark.order)),
+        marks=tuple(sorted(map(with_short_note, marks), key=Mark.order)),
         start_ns=int(document["start_ns"]),
         end_ns=int(document["end_ns"]),
         malformed=int(document["malformed"]),
@@ -214,7 +263,16 @@ def _recording(document: object) -> tuple[Recording, int, int]:
                 ReadName(**item) for name in ("names", "objects") for item in document.get(name, [])
             )
         ),
+        values=tuple(SetValue(**item) for item in document.get("values", [])),
     )
+    for record in recording.malformed_first:
+        texts = (record.topic, record.what, record.text)
+        if type(record.time_ns) is not int or not all(isinstance(one, str) for one in texts):
+            raise ValueError("a broken report whose fields are of other types")
+    times = [recording.start_ns, recording.end_ns]
+    times += [record.time_ns for record in recording.malformed_first]
+    if not all(-_LATEST <= time < _LATEST for time in times):
+        raise ValueError("a time beyond 64 bits")
     # Files of older versions say nothing of summaries.
     return recording, int(document["events"]), int(document.get("summaries", 0))
 

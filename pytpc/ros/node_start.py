@@ -21,7 +21,7 @@ ON_PATH = Path(python_runtime.__file__).resolve().parent / "on_path"
 SWITCH = "TPC_PYTHON"
 STATIC = "TPC_STATIC"
 _MODULES = "PYTHONPATH"
-_RUN = Path(python_runtime.__file__).resolve().parent / "run.py"
+RUN = Path(python_runtime.__file__).resolve().parent / "run.py"
 _LONGEST_LINE = 512
 
 
@@ -84,7 +84,7 @@ def command_of(
     options = [word for path in static for word in ("--static", str(path))]
     if verbose:
         options.append("--verbose")
-    return [*words, str(_RUN), *options, "--", str(node), *arguments]
+    return [*words, str(RUN), *options, "--", str(node), *arguments]
 
 
 def interpreter_of(node: Path) -> list[str] | None:
@@ -99,7 +99,7 @@ def interpreter_of(node: Path) -> list[str] | None:
     except OSError as error:
         raise InputError(f"cannot be run: {error.strerror or error}", node) from error
     if line.startswith(b"#!"):
-        words = shlex.split(line[2:].decode("utf-8", "replace"))
+        words = _words(line[2:].decode("utf-8", "replace"))
         if words and Path(words[0]).name == "env":
             words = [word for word in words[1:] if word != "-S" and "=" not in word]
         if words and Path(words[0]).name.startswith(("python", "pypy")):
@@ -114,6 +114,14 @@ def interpreter_of(node: Path) -> list[str] | None:
     if found is None:
         raise InputError("python3 is not installed", node)
     return [found]
+
+
+def _words(line: str) -> list[str]:
+    try:
+        return shlex.split(line)
+    except ValueError:
+        # A quotation mark without its pair: the kernel knows no quotation marks.
+        return line.split()
 
 
 def _other_folders(env: Mapping[str, str]) -> list[str]:

@@ -6,11 +6,11 @@ information says about it. ``pytpc explain`` prints that.
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
+from pytpc.base.closest import did_you_mean
 from pytpc.base.errors import InputError
 from pytpc.static.link_unit import (
     BlindSpot,
@@ -126,8 +126,7 @@ def _same(name: str | None, asked: str) -> bool:
 def _nothing_like(static: StaticInfo, name: str) -> str:
     known = {read.name for unit in static.units for read in unit.parameters}
     known |= {each.comparison.source for each in _all(static) if each.comparison.source}
-    close = difflib.get_close_matches(name, sorted(known), n=_CLOSEST, cutoff=0.5)
-    hint = f"; did you mean {', '.join(close)}?" if close else ""
+    hint = did_you_mean(name, sorted(known))
     dynamic = sum(unit.counts.dynamic_names for unit in static.units)
     if dynamic:
         hint += f" ({dynamic} read{'' if dynamic == 1 else 's'} put the name together at run time)"
@@ -158,10 +157,18 @@ def _nothing_at(static: StaticInfo, file: str, line: int) -> str:
         each.comparison.lineno for each in _all(static) if same_file(each.comparison.file, file)
     }
     if not lines:
-        return f"nothing was found in a file {file}"
+        return f"nothing was found in a file {file}{_which_files(static, file)}"
     nearest = sorted(sorted(lines, key=lambda other: abs(other - line))[:_CLOSEST])
     shown = ", ".join(str(number) for number in nearest)
     return f"nothing was found on line {line} of {file}; comparisons are on line {shown}"
+
+
+def _which_files(static: StaticInfo, file: str) -> str:
+    files = {each.comparison.file for each in _all(static)}
+    # Mostly a wrong folder, else a typing mistake in the name.
+    name = file.rpartition("/")[2]
+    same = sorted(known for known in files if known.rpartition("/")[2] == name)
+    return did_you_mean(file, same or files) or "; `pytpc list` shows the files"
 
 
 def where(place: Comparison | ParameterRead | NotExposed | BlindSpot | PathStep) -> str:

@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections import defaultdict
+from collections.abc import Callable, Iterable
+from typing import Generic, TypeVar
 
 from pytpc.static.link_unit import Comparison
+
+Named = TypeVar("Named")
 
 DYNAMIC = "<dynamic>"
 """Replaces the part of a name that only the running node knows."""
@@ -70,6 +75,54 @@ def same_parameter(given: str, source: str) -> bool:
     pattern = ".+".join(re.escape(part) for part in known.split(DYNAMIC))
     before = "(?:.*/)?" if given.startswith("/") and not source.startswith("/") else ""
     return re.fullmatch(before + pattern, _relative(given)) is not None
+
+
+def meant_by(given: str, names: Iterable[str]) -> list[str]:
+    """The names in the source that a person may mean: `same_parameter`, else those that end so.
+
+    >>> meant_by("limit", ["~limit", "~arm/limit"]), meant_by("limit", ["~arm/limit", "~rate"])
+    (['~limit'], ['~arm/limit'])
+    """
+    known = list(names)
+    same = [name for name in known if same_parameter(given, name)]
+    if same or given.startswith("/"):
+        return same
+    end = f"/{_relative(given)}"
+    return [name for name in known if without_object(name).endswith(end)]
+
+
+class ByParameter(Generic[Named]):
+    """Finds the items whose parameter a name means, in a time that does not grow with all of them.
+
+    A robot has thousands of parameters, and each may mean any of hundreds in the source.
+    """
+
+    def __init__(self, items: Iterable[Named], source_of: Callable[[Named], str]) -> None:
+        self._source_of = source_of
+        self._found: dict[str, list[Named]] = {}
+        self._by_end: defaultdict[str, list[tuple[int, Named]]] = defaultdict(list)
+        for place, item in enumerate(items):
+            end = _end(source_of(item))
+            self._by_end["" if DYNAMIC in end else end].append((place, item))
+
+    def meant(self, given: str) -> list[Named]:
+        """Those for which `same_parameter` holds, in their order."""
+        if given not in self._found:
+            # Below "" are those whose last part only the running node knows.
+            ends = {_end(given), ""}
+            near = sorted((one for end in ends for one in self._by_end.get(end, ())), key=_place)
+            self._found[given] = [
+                item for _, item in near if same_parameter(given, self._source_of(item))
+            ]
+        return self._found[given]
+
+
+def _place(one: tuple[int, object]) -> int:
+    return one[0]
+
+
+def _end(name: str) -> str:
+    return without_object(name).rpartition("/")[2].lstrip("~")
 
 
 def resolved(source: str, node: str) -> str:

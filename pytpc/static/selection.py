@@ -6,7 +6,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
+from pytpc.base.closest import did_you_mean
 from pytpc.base.errors import InputError
+from pytpc.base.wording import plain
 from pytpc.static.explanations import same_file
 from pytpc.static.places import Tpc
 from pytpc.static.static_info import StaticInfo
@@ -43,9 +45,10 @@ def select(static: StaticInfo, wanted: Selection) -> list[Tpc]:
     """The selected TPCs, sorted.
 
     Raises:
-        InputError: no package has one of the names.
+        InputError: no package, or no parameter that is compared, has one of the names.
     """
     _check_packages(static, wanted.packages)
+    _check_parameters(static, wanted.parameters)
     found = [tpc for tpc in static.tpcs if _is_wanted(tpc, wanted)]
     return sorted(found, key=ORDERS[wanted.order])
 
@@ -55,7 +58,19 @@ def _check_packages(static: StaticInfo, names: Sequence[str]) -> None:
     for name in names:
         if name not in known:
             there = ", ".join(sorted(known)) or "none"
-            raise InputError(f"no package {name} in this static information; there are: {there}")
+            hint = did_you_mean(name, known) or f"; there are: {there}"
+            raise InputError(f"no package {name} in this static information{hint}")
+
+
+def _check_parameters(static: StaticInfo, patterns: Sequence[str]) -> None:
+    """A pattern may fit nothing; a name that does is most likely a typing mistake."""
+    for name in patterns:
+        if _WILD.isdisjoint(name) and not any(_is_named(tpc, name) for tpc in static.tpcs):
+            hint = did_you_mean(name, {tpc.parameter for tpc in static.tpcs if tpc.parameter})
+            raise InputError(
+                f"no comparison with a parameter {plain(name)} in this static information"
+                f"{hint or '; `pytpc coverage` shows what became of each parameter'}"
+            )
 
 
 def _is_wanted(tpc: Tpc, wanted: Selection) -> bool:

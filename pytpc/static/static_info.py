@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import shlex
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
@@ -26,6 +27,7 @@ from pytpc.base.checked_json import (
     dump_json,
     parse_json,
 )
+from pytpc.base.closest import path_hint
 from pytpc.base.collector import without_collector
 from pytpc.base.errors import InputError, WorkspaceError
 from pytpc.base.paths import MERGED_FILE, OWN_FOLDER
@@ -42,7 +44,8 @@ class StaticInfo:
     (absolute path of the copy, absolute path of the original), ``left_out`` the link units that
     were not analysed, ``doubled`` the source files whose comparisons do not report since another
     unit has them, too. ``set_aside`` are the keys of comparisons that are known and do not count in
-    a mission; no file has them.
+    a mission; no file has them. ``sources`` are the SHA-256 of the source files when they were
+    built, as sorted pairs (absolute path, digest); empty where that is not known.
     """
 
     units: tuple[LinkUnit, ...]
@@ -50,6 +53,7 @@ class StaticInfo:
     left_out: tuple[LeftOut, ...] = ()
     doubled: tuple[Doubled, ...] = ()
     set_aside: frozenset[str] = frozenset()
+    sources: tuple[tuple[str, str], ...] = ()
 
     @classmethod
     def of(
@@ -148,24 +152,27 @@ class StaticInfo:
             "tpcs": [tpc.to_json() for tpc in self.tpcs],
             "left_out": [asdict(unit) for unit in self.left_out],
             "doubled": [asdict(source) for source in self.doubled],
+            **({"sources": dict(self.sources)} if self.sources else {}),
         }
 
     @classmethod
     def from_json(cls, data: object, path: Path) -> StaticInfo:
         """The reverse of ``to_json``; ``path`` is for messages.
 
-        Older documents lack ``copies``, ``tpcs``, ``left_out`` or ``doubled``; the TPCs follow from
-        the rest.
+        Older documents lack ``copies``, ``tpcs``, ``left_out``, ``doubled`` or ``sources``; the
+        TPCs follow from the rest.
 
         Raises:
             InputError: the document is not one of ours, with the JSON pointer of the fault.
         """
         if not isinstance(data, dict) or not isinstance(data.get("units"), list):
-            raise InputError('/: not merged static information, "units" is missing', path)
+            raise InputError(
+                '/: not merged static information, "units" is missing; give the static.json that'
+                " `pytpc build` or `pytpc collect` wrote",
+                path,
+            )
         version = data.get("schema")
         check_version(version, path)
-        if version != SCHEMA_VERSION:
-            raise InputError(f"/schema: expected {SCHEMA_VERSION}, found {version!r}", path)
         units = [
             LinkUnit.from_json(unit, path, f"/units/{index}")
             for index, unit in enumerate(data["units"])
@@ -174,7 +181,8 @@ class StaticInfo:
         check_schema({**data, "units": []}, path, MERGED_SCHEMA)
         left_out = [LeftOut(**unit) for unit in data.get("left_out", ())]
         doubled = [Doubled(**source) for source in data.get("doubled", ())]
-        return cls.of(units, path, data.get("copies"), left_out, doubled)
+        merged = cls.of(units, path, data.get("copies"), left_out, doubled)
+        return replace(merged, sources=tuple(sorted(data.get("sources", {}).items())))
 
     def save(self, path: Path) -> None:
         """Write the document atomically.
@@ -193,7 +201,7 @@ class StaticInfo:
                 (with the JSON pointer).
         """
         with without_collector():
-            data = parse_json(path)
+            data = parse_json(path, most=_LARGEST)
             if isinstance(data, dict) and "link_unit" in data:
                 return cls.of([load_link_unit(path)], path)
             return cls.from_json(_rooted(data, path.absolute().parent), path)
@@ -223,7 +231,7 @@ def load_link_unit(path: Path) -> LinkUnit:
             (with the JSON pointer).
     """
     with without_collector():
-        unit = LinkUnit.from_json(parse_json(path), path)
+        unit = LinkUnit.from_json(parse_json(path, most=_LARGEST), path)
     if path.parent.name != "tpc":
         return unit
     return replace(unit, build_folder=str(_build_folder(path.absolute().parent.parent)))
@@ -255,6 +263,8 @@ def unit_files(build_base: Path) -> list[Path]:
     return sorted(found)
 
 
+# A quarter of a million comparisons.
+_LARGEST = 1 << 27
 _PYTHON_END = "@python.json"
 # A name in a folder has at most 255 bytes, and atomic writing adds some.
 _LONGEST_NAME = 180
@@ -292,6 +302,11 @@ def collect(build_base: Path, on_progress: Callable[[int, int], None] | None = N
     return StaticInfo.of(units, build_base)
 
 
+def not_built(workspace: Path) -> str:
+    """What is wrong with a folder without static information, and what to type."""
+    return f"no static information here; run `pytpc build {shlex.quote(str(workspace))}`"
+
+
 def read_static(source: Path, on_progress: Callable[[int, int], None] | None = None) -> StaticInfo:
     """Static information from wherever it is.
 
@@ -304,6 +319,9 @@ def read_static(source: Path, on_progress: Callable[[int, int], None] | None = N
         InputError: the file, or one below the folder, is broken.
         WorkspaceError: the folder has no static information in it.
     """
+    if not source.exists():
+        hint = path_hint(source) or "; give a built workspace or a static.json"
+        raise InputError(f"no such file or folder{hint}", source)
     if not source.is_dir():
         return StaticInfo.load(source)
     merged = source / OWN_FOLDER / MERGED_FILE
@@ -311,5 +329,5 @@ def read_static(source: Path, on_progress: Callable[[int, int], None] | None = N
         return StaticInfo.load(merged)
     static = collect(source, on_progress)
     if not static.units:
-        raise WorkspaceError("no static information here; build with `pytpc build`", source)
+        raise WorkspaceError(not_built(source), source)
     return static

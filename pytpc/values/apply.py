@@ -20,7 +20,7 @@ class FileChange:
     """A change of one file by a new value.
 
     ``path`` is the file to which symbolic links lead. ``old`` is None if no file set the parameter.
-    ``notes`` are sentences for the user.
+    ``notes`` are sentences for the user, ``also`` the other parameters that the line sets.
     """
 
     parameter: str
@@ -31,6 +31,12 @@ class FileChange:
     new: object
     lineno: int
     notes: tuple[str, ...] = ()
+    also: tuple[str, ...] = ()
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """All parameters that the changed line sets."""
+        return (self.parameter, *self.also)
 
 
 def decoded(data: bytes, path: Path) -> str:
@@ -149,6 +155,7 @@ def change_as_json(change: FileChange) -> Mapping[str, object]:
     """A change as JSON."""
     return {
         "parameter": change.parameter,
+        "parameters": list(change.parameters),
         "path": str(change.path),
         "lineno": change.lineno,
         "old": change.old,

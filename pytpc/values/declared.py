@@ -20,6 +20,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from stat import S_ISREG
 
 from pytpc.ingest.declared_bag import read_declared_bag
 from pytpc.ingest.magic import BAG_MAGIC
@@ -126,7 +127,10 @@ def _read(path: Path) -> tuple[list[Declared], list[str]]:
     """
     if _is_bag(path):
         return read_declared_bag(path)
-    if path.stat().st_size > _LARGEST_FILE:
+    status = path.stat()
+    if not S_ISREG(status.st_mode):
+        return [], [f"{path}: not a file"]
+    if status.st_size > _LARGEST_FILE:
         return [], [f"{path}: too large"]
     text = path.read_bytes()
     if _GENERATOR.encode() not in text:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import filecmp
 import functools
 import re
 from pathlib import Path
@@ -47,6 +48,32 @@ def of_the_system(path: Path) -> bool:
     """Whether a file was installed by a package of the system."""
     real = path.resolve()
     return any(folder in real.parents for folder in SYSTEM_FOLDERS) and "local" not in real.parts
+
+
+def notes_on_file(path: Path, real: Path) -> tuple[str, ...]:
+    """Notes on the file that a change goes to."""
+    notes = []
+    if path.resolve() != real:
+        try:
+            same = filecmp.cmp(path, real, shallow=False)
+        except OSError:
+            same = False
+        differs = "" if same else ", which is older or newer than it"
+        notes.append(
+            f"the robot reads the installed copy {path}{differs}: build the workspace again for"
+            " the change to reach it"
+        )
+    elif is_installed(real):
+        notes.append(
+            "this is an installed copy, and no source of it is found: a build overwrites it"
+        )
+    try:
+        others = real.stat().st_nlink - 1
+    except OSError:
+        others = 0
+    if others > 0:
+        notes.append(f"{others} other names (hard links) of this file keep the old text")
+    return tuple(notes)
 
 
 def _installed_place(path: Path) -> tuple[Path, str, Path] | None:

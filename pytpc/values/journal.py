@@ -20,6 +20,7 @@ from typing import Any
 
 from pytpc.base.atomic import stage_beside
 from pytpc.base.errors import InputError, TpcError
+from pytpc.base.paths import home
 from pytpc.base.source_bytes import read_bytes
 
 SCHEMA = 1
@@ -52,10 +53,14 @@ class JournalEntry:
 
 
 def folder_of(env: Mapping[str, str]) -> Path:
-    """Where the journal is."""
+    """Where the journal is.
+
+    Raises:
+        TpcError: the user has no home folder.
+    """
     chosen = env.get("XDG_STATE_HOME", "")
     # The standard says that a relative one is not to be used.
-    base = Path(chosen) if chosen.startswith("/") else Path.home() / ".local" / "state"
+    base = Path(chosen) if chosen.startswith("/") else home() / ".local" / "state"
     return base / "tpc" / "applied"
 
 

@@ -9,6 +9,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from pytpc.base.errors import InputError
+from pytpc.base.source_bytes import read_bytes
 from pytpc.values.installed import source_of
 from pytpc.values.launch_xml import inner_text, read_tags
 from pytpc.values.origins import Origin
@@ -65,8 +67,8 @@ class _Files:
 def _bytes_of(path: Path) -> bytes:
     """The content of a file; empty if it cannot be read."""
     try:
-        return path.read_bytes()
-    except OSError:
+        return read_bytes(path)
+    except InputError:
         return b""
 
 

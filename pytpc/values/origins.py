@@ -15,6 +15,7 @@ from pytpc.base.errors import InputError
 from pytpc.static.parameters import DYNAMIC, resolved, same_parameter
 
 ORIGINS_FILE = "origins.json"
+PARAMS_FILE = "params.yaml"
 START_FILE = "params_start.yaml"
 SCHEMA = 1
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import glob
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -9,9 +10,16 @@ from pathlib import Path
 from pytpc.base.errors import InputError, TpcError
 from pytpc.base.source_bytes import read_bytes
 from pytpc.values.origin_places import Places
-from pytpc.values.origins import ORIGINS_FILE, START_FILE, Origin, write_origins
+from pytpc.values.origins import (
+    ORIGINS_FILE,
+    PARAMS_FILE,
+    START_FILE,
+    Origin,
+    write_origins,
+)
+from pytpc.values.ros2_trace import trace_any_launch
 from pytpc.values.scalars import same_value
-from pytpc.values.trace import Trace, name_on_server, trace_launch
+from pytpc.values.trace import Trace, name_on_server
 from pytpc.values.yaml_tree import YamlNode, read_yaml, settings, value_of
 
 # The parameters of roslaunch and the master themselves.
@@ -22,7 +30,26 @@ BY_A_NODE = (
     " values when it starts"
 )
 MISSION_PATIENCE_S = 20.0
+_OF_ROS2 = "ros__parameters"
 _ENV_NAMES = ("ROS_PACKAGE_PATH", "CMAKE_PREFIX_PATH", "ROS_DISTRO", "ROS_ROOT")
+
+
+def params_file(mission: Path) -> Path | None:
+    """The dump of the parameter server that belongs to a recording; None if there is none.
+
+    It is ``params.yaml`` in a mission's folder, also if its ``mission.bag`` is given. Beside any
+    other file it is ``FILE.params.yaml``, or ``params.yaml`` if no other bag could mean it.
+    """
+    if mission.is_dir():
+        found = mission / PARAMS_FILE
+        return found if found.is_file() else None
+    beside = mission.with_name(f"{mission.name}.{PARAMS_FILE}")
+    if beside.is_file():
+        return beside
+    found = mission.with_name(PARAMS_FILE)
+    pattern = f"*{glob.escape(mission.suffix)}"
+    bags = [*mission.parent.glob(pattern)] if mission.suffix else []
+    return found if found.is_file() and len(bags) <= 1 else None
 
 
 def read_parameters(path: Path) -> dict[str, object]:
@@ -36,7 +63,18 @@ def read_parameters(path: Path) -> dict[str, object]:
     except ValueError as error:
         raise InputError(str(error), path) from error
     found = settings(documents[0]) if documents else {}
-    return {"/" + "/".join(keys): _value(setting.node) for keys, setting in found.items()}
+    if () in found:
+        raise InputError("not a dump of the parameter server: it has no names", path)
+    return {_full_name(keys): _value(setting.node) for keys, setting in found.items()}
+
+
+def _full_name(keys: tuple[str, ...]) -> str:
+    """The full name of a parameter; ROS 2 has its node before ``ros__parameters``, and dots."""
+    if _OF_ROS2 not in keys:
+        return "/" + "/".join(keys)
+    at = keys.index(_OF_ROS2)
+    node = "/".join(part.strip("/") for part in keys[:at])
+    return f"/{node}/{'.'.join(keys[at + 1 :])}"
 
 
 def _value(node: YamlNode) -> object:
@@ -45,6 +83,11 @@ def _value(node: YamlNode) -> object:
     except ValueError:
         # Binary data and dates are shown as they are written.
         return node.text
+
+
+def is_of_ros(name: str) -> bool:
+    """Whether a parameter is one of roslaunch or the master themselves."""
+    return any(name == own or name.startswith(f"{own}/") for own in OF_ROS)
 
 
 def origins_of(
@@ -59,12 +102,13 @@ def origins_of(
     """
     launched: dict[str, Origin] = {}
     if trace is not None:
-        for name, origin in Places(trace).origins().items():
+        placed = Places(trace).origins() if trace.placed is None else trace.placed
+        for name, origin in placed.items():
             for full, value in leaves(name_on_server(name, at_end), origin.value):
                 launched[full] = replace(origin, name=full, value=value)
     found = {}
     for name in sorted({*at_end, *launched}):
-        if not any(name == own or name.startswith(f"{own}/") for own in OF_ROS):
+        if not is_of_ros(name):
             found[name] = _origin(name, launched.get(name), at_end, at_start, trace is not None)
     return found
 
@@ -102,9 +146,9 @@ def _origin(
 def try_trace(
     env: Mapping[str, str], launch: Path, args: Mapping[str, str]
 ) -> tuple[Trace | None, str]:
-    """``trace_launch``, or why it is not possible: no mission fails or waits long for that."""
+    """``trace_any_launch``, or why it is not possible: no mission fails or waits long for that."""
     try:
-        return trace_launch(env, launch, args, patience_s=MISSION_PATIENCE_S), ""
+        return trace_any_launch(env, launch, args, patience_s=MISSION_PATIENCE_S), ""
     except TpcError as error:
         return None, str(error)
     except Exception as error:

@@ -19,6 +19,7 @@ _ANGLE = re.compile(r"(?:deg|rad)\([^)]*\)")
 _TAG = "tag:yaml.org,2002:"
 # Other types, as dates, are texts here: the parameter server has none of them.
 _TYPES = ("null", "bool", "int", "float")
+_LONGEST_NUMBER = 1000
 _RULES = yaml.SafeLoader("")
 
 
@@ -76,6 +77,8 @@ def _tagged(text: str, tag: str) -> object:
         return _angle(text if _ANGLE.fullmatch(text.strip()) else f"{kind[:3]}({text})")
     if kind not in _TYPES:
         raise ValueError(f"the tag {tag} is not supported")
+    if kind in ("int", "float") and len(text) > _LONGEST_NUMBER:
+        raise ValueError(f"a number of {len(text):,} characters")
     try:
         return _RULES.yaml_constructors[_TAG + kind](_RULES, yaml.ScalarNode(_TAG + kind, text))
     except LookupError as error:

@@ -2,30 +2,39 @@
 
 from __future__ import annotations
 
-import filecmp
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from pytpc.base.closest import did_you_mean, path_hint
 from pytpc.base.errors import InputError
+from pytpc.base.regular_files import real_path
 from pytpc.base.source_bytes import read_bytes
 from pytpc.base.wording import listed
 from pytpc.static.parameters import same_parameter
 from pytpc.values.apply import FileChange, decoded
-from pytpc.values.installed import is_installed, of_the_system, source_of
+from pytpc.values.installed import notes_on_file, of_the_system, source_of
 from pytpc.values.journal import digest
+from pytpc.values.known import NOTHING, Known
 from pytpc.values.launch_edit import NewText, add_param, edit_argument, edit_inline, edit_param
+from pytpc.values.launch_kinds import is_ros2_launch
 from pytpc.values.launch_xml import read_tags
 from pytpc.values.new_value import Refused, guessed, read_value
 from pytpc.values.origin_places import IN_ARGS
 from pytpc.values.origins import ORIGINS_FILE, Origin, origins_file, read_document, read_origins
+from pytpc.values.params_target import plan_params
+from pytpc.values.rcl_edit import edit_params
+from pytpc.values.rcl_params import PARAMS_KEY, is_params_text
+from pytpc.values.recorded_files import RecordedFiles, check_keys
 from pytpc.values.recording import leaves, origins_of
+from pytpc.values.ros2_launch_edit import edit_ros2_launch
+from pytpc.values.ros2_trace import OF_ROS2, trace_any_launch
 from pytpc.values.scalars import type_of
-from pytpc.values.trace import LaunchNode, trace_launch
+from pytpc.values.trace import LaunchNode
 from pytpc.values.yaml_edit import Edit, all_settings, edit_yaml
 
-_YAML = (".yaml", ".yml")
 _LISTED = 8
+_SEE_ALL = "; `pytpc origin` lists those that are set"
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,18 +42,15 @@ class Target:
     """The known origins of values, and the nodes of the launch file.
 
     ``launch`` is the launch file, None where that is not known. ``files`` has the SHA-256 that the
-    files had when they were read.
+    files had when they were read. ``recorded`` is true where a recording says all this, and false
+    where the launch file was read just now.
     """
 
     origins: Mapping[str, Origin]
     nodes: Sequence[LaunchNode]
     launch: Path | None
     files: Mapping[str, str] = field(default_factory=dict)
-
-
-def is_yaml(path: Path) -> bool:
-    """Whether a path names a YAML file."""
-    return path.suffix.lower() in _YAML
+    recorded: bool = False
 
 
 def read_target(path: Path, args: Mapping[str, str], env: Mapping[str, str]) -> Target:
@@ -60,7 +66,7 @@ def read_target(path: Path, args: Mapping[str, str], env: Mapping[str, str]) -> 
         MissingToolError: roslaunch is not installed.
     """
     if not path.exists():
-        raise InputError("no such file or folder", path)
+        raise InputError(f"no such file or folder{path_hint(path)}", path)
     if path.is_dir() or path.suffix in (".bag", ".parquet"):
         if not origins_file(path).is_file():
             raise InputError(
@@ -69,7 +75,7 @@ def read_target(path: Path, args: Mapping[str, str], env: Mapping[str, str]) -> 
                 path,
             )
         return _of_mission(path)
-    trace = trace_launch(env, path, args)
+    trace = trace_any_launch(env, path, args)
     values = dict(
         leaf
         for name, settings in trace.settings.items()
@@ -87,15 +93,25 @@ def _of_mission(path: Path) -> Target:
     except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise InputError(f"not a file of origins: {error!r}", file) from error
     launch = document.get("launch")
-    return Target(read_origins(path), nodes, None if launch is None else Path(launch), files)
+    return Target(
+        read_origins(path),
+        nodes,
+        None if launch is None else Path(str(launch)),
+        files,
+        recorded=True,
+    )
 
 
-def chosen(target: Target, parameter: str) -> Origin:
+def chosen(
+    target: Target, parameter: str, known: Known = NOTHING, *, unheard_of: bool = False
+) -> Origin:
     """The origin of the parameter that a user names.
 
     Args:
         target: where it is looked for.
         parameter: its full name, or the end of it.
+        known: what the nodes read.
+        unheard_of: take a full name that is most likely a typing mistake, too.
 
     Returns:
         For a full name that is not set: an origin of the kind ``default``.
@@ -112,8 +128,14 @@ def chosen(target: Target, parameter: str) -> Origin:
         )
     if meant:
         return target.origins[meant[0]]
+    hint = did_you_mean(parameter, [*target.origins, *known.names()])
     if parameter.startswith("/"):
-        return Origin(parameter, "default", None, None, None, "")
+        if unheard_of or known.is_read(parameter) or not (hint or known.is_complete):
+            return Origin(parameter, "default", None, None, None, "")
+        also = ", and no node reads it" if known.is_complete else ""
+        raise InputError(f"{parameter} is not set anywhere{also}{hint or _SEE_ALL}")
+    if hint:
+        raise InputError(f"{parameter} is not set anywhere{hint}")
     names = listed(sorted(node.name for node in target.nodes), _LISTED) or "no node is known"
     raise InputError(
         f"{parameter} is not set anywhere; to change a default, give the full name, as in"
@@ -121,22 +143,69 @@ def chosen(target: Target, parameter: str) -> Origin:
     )
 
 
-def plan_yaml(path: Path, parameter: str, given: str, *, force: bool = False) -> FileChange:
+def set_together(target: Target, origin: Origin) -> tuple[str, ...]:
+    """The parameters that the place of an origin sets: a YAML file may be loaded for two nodes.
+
+    That of the origin is the first, the others are sorted.
+    """
+    if origin.path is None or origin.lineno is None or origin.kind not in ("yaml", "launch"):
+        return (origin.name,)
+    others = sorted(
+        one.name
+        for one in target.origins.values()
+        if one.name != origin.name and _same_place(one, origin)
+    )
+    return (origin.name, *others)
+
+
+def _same_place(one: Origin, other: Origin) -> bool:
+    """Whether two values stand at one place; a line may have several tags or keys."""
+    if (one.path, one.lineno, one.keys, one.argument) != (
+        other.path,
+        other.lineno,
+        other.keys,
+        other.argument,
+    ):
+        return False
+    if one.keys or one.argument:
+        return True
+    return one.name.rpartition("/")[2] == other.name.rpartition("/")[2]
+
+
+def options_to_apply(origin: Origin) -> tuple[str, ...] | None:
+    """The options with which ``pytpc apply MISSION`` changes a value; None if it cannot."""
+    if origin.kind in ("default", "runtime"):
+        return ("--add",)
+    in_file = origin.path is not None and origin.kind in ("yaml", "launch")
+    return () if in_file and not origin.note.startswith(IN_ARGS) else None
+
+
+def plan_yaml(
+    path: Path, parameter: str, given: str, *, add: bool = False, force: bool = False
+) -> FileChange:
     """Work out a change of a YAML file; nothing is written.
 
     Args:
         path: of the file; symbolic links are followed.
-        parameter: its keys from the top, joined by slashes, or the end of them.
+        parameter: its keys from the top, joined by slashes, or the end of them; in a params file
+            of ROS 2 as ``plan_params`` reads it.
         given: the new value as typed.
+        add: add it to a params file that does not set it.
         force: see ``edit_yaml``.
 
     Raises:
         InputError: the file cannot be read, or the change is refused; with the line.
     """
-    real = path.resolve()
+    if not path.exists() and not path.is_symlink():
+        raise InputError(f"no such file{path_hint(path)}", path)
+    real = real_path(path)
     data = read_bytes(real)
     text = decoded(data, path)
     try:
+        if is_params_text(text):
+            name, edit = plan_params(text, parameter, given, add=add, force=force)
+            notes = (*edit.notes, *notes_on_file(path, real))
+            return FileChange(name, real, data, edit.data, edit.old, edit.new, edit.lineno, notes)
         wanted = parameter.strip("~/")
         known = {keys for document in all_settings(text) for keys in document}
         whole = [keys for keys in known if "/".join(keys) == wanted]
@@ -145,17 +214,23 @@ def plan_yaml(path: Path, parameter: str, given: str, *, force: bool = False) ->
         if len(meant) != 1:
             names = listed(sorted("/".join(keys) for keys in meant), _LISTED)
             what = f"several values end with {parameter}: {names}" if meant else ""
-            raise Refused(what or f"{parameter} is not in the file")
+            hint = did_you_mean(wanted, ["/".join(keys) for keys in known])
+            raise Refused(what or f"{parameter} is not in the file{hint}")
         edit = edit_yaml(text, meant[0], given, force=force)
     except Refused as error:
         raise InputError(str(error), path, error.lineno) from error
-    notes = (*edit.notes, *_where(path, real))
+    notes = (*edit.notes, *notes_on_file(path, real))
     name = "/" + "/".join(meant[0])
     return FileChange(name, real, data, edit.data, edit.old, edit.new, edit.lineno, notes)
 
 
 def plan_origin(
-    origin: Origin, given: str, *, force: bool = False, files: Mapping[str, str] | None = None
+    origin: Origin,
+    given: str,
+    *,
+    force: bool = False,
+    files: Mapping[str, str] | None = None,
+    recorded: RecordedFiles | None = None,
 ) -> FileChange:
     """Work out a change of the file that set a value; nothing is written.
 
@@ -165,6 +240,7 @@ def plan_origin(
         force: see ``edit_yaml``.
         files: path -> SHA-256 of the files as they were then. In one that was changed since, the
             lines may be others, and a tag is changed only where no other one may be meant.
+        recorded: what to check where a recording names the file; None where the user does.
 
     Raises:
         InputError: no file set it, the file is no longer there, or the change is refused.
@@ -183,17 +259,26 @@ def plan_origin(
             " (--add), or --force",
             file,
         )
-    real = file.resolve()
+    real = real_path(file)
     data = read_bytes(real)
+    if recorded is not None:
+        check_keys(origin)
+        recorded.check(real, data, path, origin.lineno)
     try:
-        if origin.kind == "yaml":
+        if origin.kind == "yaml" and PARAMS_KEY in origin.keys:
+            edit = edit_params(
+                decoded(data, file), origin.keys, given, lineno=origin.lineno, force=force
+            )
+        elif origin.kind == "yaml":
             edit = edit_yaml(decoded(data, file), origin.keys, given, force=force)
         else:
             as_then = (files or {}).get(str(path), digest(data)) == digest(data)
             edit = _edit_launch(data, origin, given, force, as_then=as_then)
     except Refused as error:
         raise InputError(str(error), file, error.lineno) from error
-    notes = (*edit.notes, *_where(path, real))
+    notes = (*edit.notes, *notes_on_file(path, real))
+    if PARAMS_KEY in origin.keys and "*" in "".join(origin.keys):
+        notes = (origin.note, *notes)
     if origin.value is not None and repr(origin.value) != repr(edit.old):
         notes += (f"the robot had {origin.value!r}; the file was changed since",)
     return FileChange(origin.name, real, data, edit.data, edit.old, edit.new, edit.lineno, notes)
@@ -201,6 +286,8 @@ def plan_origin(
 
 def _edit_launch(data: bytes, origin: Origin, given: str, force: bool, *, as_then: bool) -> Edit:
     lineno = (origin.lineno or 0) if as_then else 0
+    if origin.param_type == OF_ROS2:
+        return edit_ros2_launch(data, origin, lineno, given, force=force)
     if origin.argument:
         via = [
             int(line)
@@ -219,7 +306,13 @@ def _edit_launch(data: bytes, origin: Origin, given: str, force: bool, *, as_the
     return edit_inline(data, origin.keys, lineno, given, force=force)
 
 
-def plan_addition(origin: Origin, target: Target, given: str, default: object = None) -> FileChange:
+def plan_addition(
+    origin: Origin,
+    target: Target,
+    given: str,
+    default: object = None,
+    recorded: RecordedFiles | None = None,
+) -> FileChange:
     """Work out a ``<param>`` for a value that no file sets; nothing is written.
 
     It goes into the tag of the node in whose namespace it is, else to the end of the launch file.
@@ -229,6 +322,7 @@ def plan_addition(origin: Origin, target: Target, given: str, default: object = 
         target: where the nodes stand.
         given: the new value as typed.
         default: in the code, where it is known: its type is kept.
+        recorded: as in ``plan_origin``.
 
     Raises:
         InputError: the launch file is not known or not here, or a value does not fit.
@@ -239,8 +333,16 @@ def plan_addition(origin: Origin, target: Target, given: str, default: object = 
     if path is None:
         raise InputError("the launch file is not known; give that instead of the mission")
     file = source_of(path) or path
-    real = file.resolve()
+    if is_ros2_launch(file):
+        raise InputError(
+            "nothing is added to launch files of ROS 2; add it to a params file that it loads, as"
+            f" in: pytpc apply PARAMS.yaml {origin.name} {given} --add",
+            file,
+        )
+    real = real_path(file)
     data = read_bytes(real)
+    if recorded is not None:
+        recorded.check(real, data, path)
     known = origin.value if origin.value is not None else default
     try:
         value = guessed(given) if known is None else read_value(given, type_of(known))
@@ -249,7 +351,7 @@ def plan_addition(origin: Origin, target: Target, given: str, default: object = 
         edit = add_param(data, offset, name, value, given)
     except Refused as error:
         raise InputError(str(error), file, error.lineno) from error
-    notes = _where(path, real)
+    notes = notes_on_file(path, real)
     return FileChange(origin.name, real, data, edit.data, None, value, edit.lineno, notes)
 
 
@@ -284,29 +386,3 @@ def _why_not(origin: Origin) -> str:
             " puts it into the launch file"
         )
     return f"it is not known where {name} was set; give the launch file or the YAML file"
-
-
-def _where(path: Path, real: Path) -> tuple[str, ...]:
-    """Notes on the file that a change goes to."""
-    notes = []
-    if path.resolve() != real:
-        try:
-            same = filecmp.cmp(path, real, shallow=False)
-        except OSError:
-            same = False
-        differs = "" if same else ", which is older or newer than it"
-        notes.append(
-            f"the robot reads the installed copy {path}{differs}: build the workspace again for"
-            " the change to reach it"
-        )
-    elif is_installed(real):
-        notes.append(
-            "this is an installed copy, and no source of it is found: a build overwrites it"
-        )
-    try:
-        others = real.stat().st_nlink - 1
-    except OSError:
-        others = 0
-    if others > 0:
-        notes.append(f"{others} other names (hard links) of this file keep the old text")
-    return tuple(notes)

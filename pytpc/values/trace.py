@@ -16,14 +16,21 @@ from pathlib import Path
 from typing import Any
 
 from pytpc.base.errors import InputError, MissingToolError, RunError
+from pytpc.values.origins import Origin
 
 # It runs with roslaunch's Python, so it is not imported.
 _TRACER = Path(__file__).with_name("tracer") / "launch_tracer.py"
 _PATIENCE_S = 60.0
 _SHEBANG_BYTES = 256
 _LONGEST = 600
+# What roslaunch says of a package that it does not find.
+_NO_PACKAGE = re.compile(r"(?P<package>[^\s:]+) ROS path \[0\]=")
 # The word of launch_tracer for the random part of $(anon x).
 _ANONYMOUS = "__tpc_anon"
+
+
+class PackageNotFoundError(InputError):
+    """A launch file needs a package that is not in the environment in which it is read."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +60,8 @@ class Trace:
 
     ``settings`` has for each parameter, by full name, what set it in this order: the last holds.
     Each is the object that ``launch_tracer`` describes. ``files`` has the SHA-256 of every launch
-    and YAML file that was read.
+    and YAML file that was read. ``absent`` has package and program of the nodes that roslaunch
+    would not find. ``placed`` has the origins themselves where launch of ROS 2 has read the file.
     """
 
     launch: Path
@@ -61,6 +69,8 @@ class Trace:
     settings: Mapping[str, Sequence[Mapping[str, Any]]]
     nodes: Sequence[LaunchNode]
     files: Mapping[str, str]
+    absent: Sequence[tuple[str, str]] = ()
+    placed: Mapping[str, Origin] | None = None
 
     @property
     def by_roslaunch(self) -> set[str]:
@@ -71,6 +81,12 @@ class Trace:
             if any(setting.get("from") != "args" for setting in settings)
         }
 
+    @property
+    def sim_time(self) -> bool | None:
+        """Whether it has the graph run on /clock; None where it does not say."""
+        said = [one.get("value") for one in self.settings.get("/use_sim_time", ())]
+        return None if not said else said[-1] is True
+
 
 def roslaunch_python(env: Mapping[str, str]) -> str:
     """The Python that roslaunch runs with.
@@ -79,13 +95,20 @@ def roslaunch_python(env: Mapping[str, str]) -> str:
         MissingToolError: roslaunch is not on this environment's PATH.
     """
     path = env.get("PATH")
-    program = shutil.which("roslaunch", path=path)
-    if program is None:
+    if shutil.which("roslaunch", path=path) is None:
         raise MissingToolError(
             "roslaunch not found; install it with: apt-get install python3-roslaunch"
         )
-    with Path(program).open("rb") as stream:
-        first = stream.read(_SHEBANG_BYTES).partition(b"\n")[0].decode("utf-8", "replace")
+    return interpreter_of("roslaunch", path)
+
+
+def interpreter_of(name: str, path: str | None) -> str:
+    """The Python that a program on a PATH runs with; without the program, that of the PATH."""
+    program = shutil.which(name, path=path)
+    first = ""
+    if program is not None:
+        with Path(program).open("rb") as stream:
+            first = stream.read(_SHEBANG_BYTES).partition(b"\n")[0].decode("utf-8", "replace")
     words = first.removeprefix("#!").split() if first.startswith("#!") else []
     if words and Path(words[0]).name == "env":
         words = [shutil.which(words[-1], path=path) or ""]
@@ -110,38 +133,92 @@ def trace_launch(
         patience_s: how long it may take.
 
     Raises:
+        PackageNotFoundError: it needs a package that is not there.
         InputError: roslaunch would not take the file; the message is its own.
         MissingToolError: roslaunch is not installed.
         RunError: it does not end.
     """
     if not launch.is_file():
         raise InputError("no such launch file", launch)
+    python = roslaunch_python(env)
+    try:
+        answer = run_tracer([python, str(_TRACER)], env, launch, args, patience_s=patience_s)
+    except TracerError as error:
+        why = error.why
+        if why.startswith("ModuleNotFoundError"):
+            raise MissingToolError(
+                f"{python} has no roslaunch; install it with: apt-get install python3-roslaunch"
+            ) from None
+        if unknown := _NO_PACKAGE.search(why):
+            raise PackageNotFoundError(
+                f"it needs the package {unknown['package']}, which no sourced workspace has", launch
+            ) from None
+        raise InputError(f"roslaunch cannot read it: {error.short}", launch) from None
+    nodes = [LaunchNode.of(node) for node in answer["nodes"]]
+    absent = [(str(package), str(program)) for package, program in answer["absent"]]
+    parameters, files = answer["parameters"], answer["files"]
+    return Trace(launch.absolute(), dict(args), parameters, nodes, files, absent)
+
+
+class TracerError(Exception):
+    """A tracer could not read a launch file.
+
+    Attributes:
+        why: the last line of what it said.
+    """
+
+    def __init__(self, why: str) -> None:
+        super().__init__(why)
+        self.why = why
+
+    @property
+    def short(self) -> str:
+        """The line without its middle if it is long, as of an endless chain of includes."""
+        if len(self.why) <= _LONGEST:
+            return self.why
+        return f"{self.why[: _LONGEST // 2]} ... {self.why[-_LONGEST // 2 :]}"
+
+
+def run_tracer(
+    command: Sequence[str],
+    env: Mapping[str, str],
+    launch: Path,
+    args: Mapping[str, str],
+    *,
+    patience_s: float,
+) -> dict[str, Any]:
+    """What a program of ``pytpc.values.tracer`` says of a launch file.
+
+    Args:
+        command: the interpreter under which it runs, and the program.
+        env: its environment.
+        launch: the launch file.
+        args: its arguments, as on the command line.
+        patience_s: how long it may take.
+
+    Raises:
+        TracerError: it ended with an error.
+        RunError: it does not end.
+    """
     given = [f"{name}:={value}" for name, value in sorted(args.items())]
-    command = [roslaunch_python(env), str(_TRACER), str(launch.absolute()), *given]
     try:
         ran = subprocess.run(
-            command,
+            [*command, str(launch.absolute()), *given],
             env={**env, "PYTHONDONTWRITEBYTECODE": "1"},
             stdin=subprocess.DEVNULL,
             capture_output=True,
             timeout=patience_s,
             check=False,
+            # A Ctrl-C is for the program that asks, which goes on with what is read.
+            start_new_session=True,
         )
     except subprocess.TimeoutExpired as error:
         raise RunError(f"was not read within {patience_s:.0f} s", launch) from error
     if ran.returncode != 0:
         said = ran.stderr.decode("utf-8", "replace").strip().splitlines()
-        if said and said[-1].startswith("ModuleNotFoundError"):
-            raise MissingToolError(
-                f"{command[0]} has no roslaunch; install it with: apt-get install python3-roslaunch"
-            )
-        why = said[-1] if said else "no reason"
-        # roslaunch names each include of an endless chain.
-        why = why if len(why) <= _LONGEST else f"{why[: _LONGEST // 2]} ... {why[-_LONGEST // 2 :]}"
-        raise InputError(f"roslaunch cannot read it: {why}", launch)
-    answer = json.loads(ran.stdout)
-    nodes = [LaunchNode.of(node) for node in answer["nodes"]]
-    return Trace(launch.absolute(), dict(args), answer["parameters"], nodes, answer["files"])
+        raise TracerError(said[-1] if said else "no reason")
+    answer: dict[str, Any] = json.loads(ran.stdout)
+    return answer
 
 
 def name_on_server(name: str, on_server: Collection[str]) -> str:

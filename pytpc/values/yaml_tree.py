@@ -19,6 +19,8 @@ from pytpc.values.scalars import plain_value
 # PyYAML's classes of events, which differ in their fields.
 _Event = Any
 _MERGE = "<<"
+_MOST_VALUES = 1_000_000
+_DEEPEST = 200
 _MERGE_TAG = "tag:yaml.org,2002:merge"
 
 
@@ -28,7 +30,8 @@ class YamlNode:
 
     ``start`` and ``end`` are offsets into the text, without the anchor and the tag; ``lineno`` is
     counted from 1. ``style`` of a scalar is ``"`` or ``'`` or ``|`` or ``>``, empty where plain.
-    ``tag`` is one that is written. ``target`` is where an alias points.
+    ``tag`` is one that is written. ``target`` is where an alias points. ``size`` is the number of
+    values in it, each alias with all that it stands for.
     """
 
     kind: Literal["scalar", "map", "list", "alias"]
@@ -43,6 +46,7 @@ class YamlNode:
     pairs: list[tuple[YamlNode, YamlNode]] = field(default_factory=list)
     items: list[YamlNode] = field(default_factory=list)
     target: YamlNode | None = None
+    size: int = 1
 
     @property
     def behind(self) -> YamlNode:
@@ -77,7 +81,8 @@ def read_yaml(text: str) -> list[YamlNode]:
     """The documents of a text; an empty document is an empty plain scalar.
 
     Raises:
-        ValueError: the text is not YAML; the message has the line.
+        ValueError: the text is not YAML, or has more values than any robot; the message has the
+            line.
     """
     try:
         return list(_documents(yaml.parse(text, yaml.SafeLoader), text))
@@ -97,17 +102,37 @@ def _documents(events: Iterator[_Event], text: str) -> Iterator[YamlNode]:
             yield _node(next(events), events, anchors, text)
 
 
+def _counted(node: YamlNode, below: YamlNode) -> YamlNode:
+    """``below`` itself, after its values are added to those of the node that it is in.
+
+    Raises:
+        ValueError: they are too many; a kilobyte of aliases can stand for billions.
+    """
+    node.size += below.size
+    if node.size > _MOST_VALUES:
+        raise ValueError(f"line {below.lineno}: more than {_MOST_VALUES:,} values, with aliases")
+    return below
+
+
 def _node(
-    event: _Event, events: Iterator[_Event], anchors: dict[str, YamlNode], text: str
+    event: _Event,
+    events: Iterator[_Event],
+    anchors: dict[str, YamlNode],
+    text: str,
+    depth: int = 0,
 ) -> YamlNode:
     kind = type(event).__name__
     start, end = event.start_mark.index, event.end_mark.index
     lineno = event.start_mark.line + 1
+    if depth > _DEEPEST:
+        raise ValueError(f"line {lineno}: more than {_DEEPEST} levels")
     if kind == "AliasEvent":
         target = anchors.get(event.anchor)
         if target is None:
             raise ValueError(f"line {lineno}: *{event.anchor} has no anchor")
-        return YamlNode("alias", start, end, lineno, text=event.anchor, target=target)
+        return YamlNode(
+            "alias", start, end, lineno, text=event.anchor, target=target, size=target.size
+        )
     tag = None if event.tag is None else str(event.tag)
     node = YamlNode("scalar", start, end, lineno, tag=tag, anchor=event.anchor)
     if node.anchor is not None:
@@ -121,12 +146,13 @@ def _node(
     if kind == "SequenceStartEvent":
         node.kind = "list"
         while type(event := next(events)).__name__ != "SequenceEndEvent":
-            node.items.append(_node(event, events, anchors, text))
+            node.items.append(_counted(node, _node(event, events, anchors, text, depth + 1)))
     else:
         node.kind = "map"
         while type(event := next(events)).__name__ != "MappingEndEvent":
-            key = _node(event, events, anchors, text)
-            node.pairs.append((key, _node(next(events), events, anchors, text)))
+            key = _counted(node, _node(event, events, anchors, text, depth + 1))
+            value = _counted(node, _node(next(events), events, anchors, text, depth + 1))
+            node.pairs.append((key, value))
     node.end = event.end_mark.index
     return node
 

@@ -15,7 +15,13 @@ from glob import escape
 from pathlib import Path
 
 from pytpc.base.errors import RunError, WorkspaceError
-from pytpc.base.paths import MERGED_FILE, OWN_FOLDER, search_path
+from pytpc.base.paths import (
+    MERGED_FILE,
+    OWN_FOLDER,
+    conda_prefix,
+    search_path,
+    without_conda,
+)
 from pytpc.base.signals import end_group, signals_end
 from pytpc.workspace.packages import Package
 
@@ -27,6 +33,16 @@ _HANDLERS = ("console_direct+", "console_cohesion-", "console_stderr-", "summary
 _EVENT = re.compile(
     r"^\[[0-9.]+\] \((?P<name>[^)]*)\) Job(?P<what>Ended|Skipped): (?P<data>\{.*\})$"
 )
+# Lists of folders that programs, compilers and CMake search, and flags.
+_SEARCHED = {
+    "CMAKE_PREFIX_PATH",
+    "CPATH",
+    "LD_LIBRARY_PATH",
+    "LIBRARY_PATH",
+    "PKG_CONFIG_PATH",
+    "PYTHONPATH",
+}
+_FLAGS = ("CC", "CXX", "CPP", "LD", "AR", "CFLAGS", "CXXFLAGS", "CPPFLAGS", "LDFLAGS", "CMAKE_ARGS")
 _STATUS = re.compile(r"'rc': (?P<rc>[^}]+)\}$")
 # Done, interrupted because another one failed, or never begun for that reason.
 _NO_FAULT = ("0", "'SIGINT'", "skipped")
@@ -50,8 +66,13 @@ class Bases:
 
     @property
     def install(self) -> Path:
-        """The folder from which nodes are run; see ``workspace_env``."""
+        """The folder into which packages are installed; see ``workspace_env``."""
         return self.root / "install"
+
+    @property
+    def devel(self) -> Path:
+        """The prefix in which packages are their source folders; see `build.devel_space`."""
+        return self.root / "devel"
 
     @property
     def log(self) -> Path:
@@ -151,6 +172,7 @@ def colcon_command(
         f"-DCMAKE_BUILD_TYPE={options.build_type}",
         # Empty, so that those of an earlier build do not stay in CMake's cache.
         f"-DTPC_RULES={rules.absolute() if rules is not None else ''}",
+        f"-DTPC_BASE={bases.root}",
         "-DPYTHON_EXECUTABLE=/usr/bin/python3",
         *options.cmake_args,
     ]
@@ -182,18 +204,29 @@ def colcon_command(
 
 
 def build_environment() -> dict[str, str]:
-    """The caller's environment without its Python's and make's settings; system programs first.
+    """The caller's environment without its Python's, conda's and make's settings; system first.
 
     The pipe of the job server of ``make -j`` does not reach us: a make below would run one job."""
     own = {"PYTHONHOME", "VIRTUAL_ENV", "PATH", "MAKELEVEL", "MFLAGS"}
     if "--jobserver" in os.environ.get("MAKEFLAGS", ""):
         own.add("MAKEFLAGS")
+    conda = conda_prefix()
+    if conda is not None:
+        own |= {name for name in os.environ if name.startswith(("CONDA_", "_CE_"))}
+        # Its compiler packages set these, for its own libraries.
+        own |= {name for name in _FLAGS if str(conda) in os.environ.get(name, "")}
     environment = {name: value for name, value in os.environ.items() if name not in own}
+    for name in _SEARCHED & environment.keys():
+        environment[name] = without_conda(name, environment[name])
     return {**environment, "PATH": search_path(), "PYTHONUNBUFFERED": "1"}
 
 
 def run_colcon(
-    command: list[str], workspace: Path, bases: Bases, on_output: Callable[[str], None] | None
+    command: list[str],
+    workspace: Path,
+    bases: Bases,
+    on_output: Callable[[str], None] | None,
+    environment: Mapping[str, str],
 ) -> None:
     """Run colcon to its end; an interruption ends the compilers below it, too.
 
@@ -209,7 +242,7 @@ def run_colcon(
         if on_output is not None:
             on_output(line)
 
-    status = run_lines(command, workspace, build_environment(), hear)
+    status = run_lines(command, workspace, environment, hear)
     if status != 0 and shutil.disk_usage(bases.root).free < _FULL:
         # No package is at fault, and colcon fails in many ways.
         raise RunError("the disk is full; free some space and build again", bases.root)

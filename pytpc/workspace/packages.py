@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -10,9 +11,11 @@ from pathlib import Path
 from typing import Any
 from xml.parsers import expat
 
+from pytpc.base.closest import no_folder
 from pytpc.base.errors import InputError, MissingToolError, WorkspaceError
 from pytpc.base.source_bytes import read_bytes
 from pytpc.workspace.cmake_syntax import find_fault
+from pytpc.workspace.ros2 import ROS_VERSION, default_ros
 
 MANIFEST = "package.xml"
 IGNORE_MARKERS = frozenset({"COLCON_IGNORE", "CATKIN_IGNORE", "AMENT_IGNORE"})
@@ -38,6 +41,11 @@ class Package:
         """The package's CMakeLists.txt; a package in Python alone has none."""
         return self.path / "CMakeLists.txt"
 
+    @property
+    def ros(self) -> str:
+        """The ROS that it is for; see ``ros_of``."""
+        return ros_of(self.build_type)
+
 
 @dataclass(frozen=True, slots=True)
 class Manifest:
@@ -54,9 +62,21 @@ class Manifest:
     test_depends: tuple[str, ...] = ()
 
     @property
+    def ros(self) -> str:
+        """The ROS that the package is for; see ``ros_of``."""
+        return ros_of(self.build_type)
+
+    @property
     def needs(self) -> tuple[str, ...]:
         """The packages that are built before it, as colcon and catkin order them."""
         return tuple(dict.fromkeys((*self.build_depends, *self.run_depends)))
+
+
+def ros_of(build_type: str) -> str:
+    """The ROS that a build type belongs to, "1" or "2"; empty for plain CMake."""
+    if build_type == "catkin":
+        return "1"
+    return "2" if build_type.startswith("ament") else ""
 
 
 def find_packages(workspace: Path) -> list[Package]:
@@ -73,13 +93,16 @@ def find_packages(workspace: Path) -> list[Package]:
         MissingToolError: catkin_pkg is not installed.
     """
     if not workspace.is_dir():
-        raise WorkspaceError("no such folder", workspace)
+        raise WorkspaceError(no_folder(workspace), workspace)
     packages = []
     for folder in package_folders(workspace):
         manifest = read_manifest(folder)
         packages.append(Package(manifest.name, folder, manifest.build_type, manifest.needs))
     if not packages:
-        raise WorkspaceError(f"no packages here: no {MANIFEST} in this folder or below", workspace)
+        raise WorkspaceError(
+            f"no packages here: no {MANIFEST} in this folder or below; give the one with src",
+            workspace,
+        )
     by_name: dict[str, Package] = {}
     for package in packages:
         other = by_name.setdefault(package.name, package)
@@ -210,10 +233,11 @@ def package_folders(workspace: Path) -> Iterator[Path]:
             below.clear()
             yield Path(folder)
             continue
-        below[:] = sorted(name for name in below if _is_searched(Path(folder, name)))
+        below[:] = sorted(name for name in below if is_searched(Path(folder, name)))
 
 
-def _is_searched(folder: Path) -> bool:
+def is_searched(folder: Path) -> bool:
+    """Whether packages are looked for in a folder of this name; see ``find_packages``."""
     if folder.name.startswith("."):
         return False
     return folder.name not in PRODUCTS or (folder / MANIFEST).is_file()
@@ -221,6 +245,9 @@ def _is_searched(folder: Path) -> bool:
 
 def read_manifest(folder: Path) -> Manifest:
     """The package.xml of a folder.
+
+    Conditions on ``$ROS_VERSION`` are those of the ROS that its build type is for, whatever was
+    sourced. A package for both ROS is for the one that was sourced, else for ROS 1 if it is here.
 
     Raises:
         InputError: it cannot be read as one, with its line where there is one.
@@ -230,15 +257,14 @@ def read_manifest(folder: Path) -> Manifest:
         from catkin_pkg.package import InvalidPackage, parse_package_string  # noqa: PLC0415
     except ImportError as error:
         raise MissingToolError(
-            "catkin_pkg is not installed; run: apt-get install python3-catkin-pkg"
+            f"{sys.executable} has no catkin_pkg; run: {sys.executable} -m pip install catkin_pkg"
         ) from error
     path = folder / MANIFEST
     raw = read_bytes(path)
     try:
         expat.ParserCreate().Parse(raw, True)
         manifest = parse_package_string(raw, filename=str(path), warnings=[])
-        manifest.evaluate_conditions({"ROS_VERSION": "1", **os.environ})
-        build_type = manifest.get_build_type()
+        build_type = _evaluated(manifest)
     except expat.ExpatError as error:
         what = expat.ErrorString(error.code)
         raise InputError(
@@ -259,6 +285,18 @@ def read_manifest(folder: Path) -> Manifest:
         _names(manifest.exec_depends),
         _names(manifest.test_depends),
     )
+
+
+def _evaluated(manifest: Any) -> str:  # noqa: ANN401
+    """Evaluate the conditions of catkin_pkg's manifest; return the build type."""
+    first = default_ros()
+    build_type = ""
+    for version in (first, "1" if first == "2" else "2"):
+        manifest.evaluate_conditions({**os.environ, ROS_VERSION: version})
+        build_type = manifest.get_build_type()
+        if ros_of(build_type) in ("", version):
+            break
+    return build_type
 
 
 def _names(*lists: Iterable[Any]) -> tuple[str, ...]:

@@ -20,6 +20,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pytpc.base.atomic import leftovers, stage_like
+from pytpc.base.closest import no_folder
 from pytpc.base.diff import unified_diff
 from pytpc.base.errors import InputError, WorkspaceError
 from pytpc.base.paths import cmake_file
@@ -101,7 +102,7 @@ def plan_tree(
         MissingToolError: TPC's C++ half is not installed (for patching only).
     """
     if not folder.is_dir():
-        raise WorkspaceError("no such folder", folder)
+        raise WorkspaceError(no_folder(folder), folder)
     files: list[tuple[Path, bytes]] = []
     foreign: list[Path] = []
     top = folder.resolve()

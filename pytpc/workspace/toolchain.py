@@ -6,11 +6,17 @@ its own folder, because a build folder keeps the compiler that it was made with.
 
 from __future__ import annotations
 
+import os
 import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
+
+from pytpc.base.atomic import write_atomic
+from pytpc.base.paths import clang_release, home
+
+_GAP = "@TPC_CMAKE_FILE@"
 
 
 class Way(Enum):
@@ -137,7 +143,7 @@ def _catkin_tools(arguments: tuple[str, ...]) -> list[Step]:
 
 
 def _colcon(prefix: Path, choices: Choices) -> list[Step]:
-    index = (prefix / "share/tpc/colcon/index.yaml").as_uri()
+    index = mixin_index(prefix).as_uri()
     mixin = "the mixin, which needs the PyPI package colcon-mixin"
     further = [f"-D{name}={value}" for name, value in choices.variables().items()]
     build = ("colcon", "build", "--mixin", "tpc", *(["--cmake-args", *further] if further else []))
@@ -147,6 +153,26 @@ def _colcon(prefix: Path, choices: Choices) -> list[Step]:
         Step(build, "builds; further mixins may stand behind tpc"),
         Step(("pytpc", "collect", "build_tpc"), "what the analysis found"),
     ]
+
+
+def mixin_index(prefix: Path) -> Path:
+    """The index of the mixin for colcon.
+
+    A wheel cannot know where it is installed, and the mixin of one has a gap for that. It is filled
+    in in a copy, in ``$XDG_DATA_HOME/tpc`` (``~/.local/share/tpc``).
+    """
+    index = prefix / "share/tpc/colcon/index.yaml"
+    mixin = index.with_name("tpc.mixin")
+    text = mixin.read_text("utf-8") if mixin.is_file() else ""
+    if _GAP not in text:
+        return index
+    data = os.environ.get("XDG_DATA_HOME") or home() / ".local/share"
+    folder = Path(data) / "tpc/colcon" / prefix.name
+    folder.mkdir(parents=True, exist_ok=True)
+    filled = text.replace(_GAP, str(prefix / "share/tpc/cmake/tpc.cmake"))
+    write_atomic(folder / mixin.name, filled.encode())
+    write_atomic(folder / index.name, index.read_bytes())
+    return folder / index.name
 
 
 def _compilers(prefix: Path, choices: Choices) -> list[Step]:
@@ -164,7 +190,7 @@ def _compilers(prefix: Path, choices: Choices) -> list[Step]:
             for name, value in variables.items()
         ),
         # A build that calls the linker itself needs one that knows bitcode.
-        Step(("export", "LD=ld.lld-19"), "compilers and archiver"),
+        Step(("export", f"LD=ld.lld-{clang_release()}"), "compilers and archiver"),
         *(
             Step(("export", f"{name}={value}"), "what to analyse")
             for name, value in choices.variables().items()

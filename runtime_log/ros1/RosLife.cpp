@@ -14,7 +14,6 @@
 #include <mutex>
 #include <pthread.h>
 #include <thread>
-#include <unistd.h>
 
 namespace tpc {
 
@@ -56,14 +55,6 @@ RosUse::~RosUse() {
 }
 
 bool forkedFromNode() { return Forked; }
-
-void warnOfFork(const char *Topic) {
-  static std::atomic<bool> Said{false};
-  if (!Said.exchange(true))
-    warn("process " + std::to_string(getpid()) +
-         " was forked from a node: its reports do not reach " + Topic +
-         "; the sink file records them");
-}
 
 bool rosIsUp() {
   if (!ros::isStarted() || ros::isShuttingDown()) {

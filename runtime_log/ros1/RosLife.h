@@ -35,11 +35,6 @@ private:
 /// while holding a RosUse.
 bool rosIsUp();
 
-/// Warns, once per process, that its reports are not on \p Topic because it was
-/// forked from a node. Not at its end, because such a process has to leave by
-/// _exit.
-void warnOfFork(const char *Topic);
-
 /// Runs a job that talks to the master, which may take for ever, in a thread of
 /// its own that holds a RosUse; one job at a time.
 ///

@@ -76,7 +76,9 @@ def mission(tmp_path, **changes):
 class Page(HTMLParser):
     """Collects what the tests ask of a page, and checks that its elements close."""
 
-    VOID = frozenset({"meta", "br", "path", "use", "rect", "line", "stop", "link", "img", "input"})
+    VOID = frozenset(
+        {"meta", "br", "path", "use", "rect", "line", "stop", "link", "img", "input", "wbr"}
+    )
 
     def __init__(self, text):
         super().__init__()
@@ -110,7 +112,7 @@ class Page(HTMLParser):
             assert not name.startswith("on")
             if name == "id":
                 self.ids[value] += 1
-            if name == "aria-labelledby":
+            if name in {"aria-labelledby", "aria-describedby"}:
                 self.references.add(f"#{value}")
             if name in {"href", "xlink:href", "src", "action"}:
                 (self.references if value.startswith("#") else self.addresses).add(value)

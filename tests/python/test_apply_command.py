@@ -67,6 +67,7 @@ def test_json(apply, params: Path) -> None:
     del answer["diff"]
     assert answer == {
         "parameter": "/mission/limit",
+        "parameters": ["/mission/limit"],
         "path": str(params),
         "lineno": 3,
         "old": 0.058,
@@ -264,7 +265,9 @@ def test_a_mission(apply, tmp_path: Path) -> None:
     extra = tmp_path / "robot/config/extra.yaml"
     # The file was changed since the mission: the line is another, and the value, too.
     extra.write_text("# new\nmission:\n  limit: 0.05\n")
-    done = apply(mission, "/mission/limit", "0.04")
+    changed = apply(mission, "/mission/limit", "0.04", status=1).output
+    assert f"{extra}:2: differs from the file that was recorded" in changed
+    done = apply(mission, "/mission/limit", "0.04", "--force")
     assert extra.read_text() == "# new\nmission:\n  limit: 0.04\n"
     assert f"{extra}:3: /mission/limit 0.05 -> 0.04" in done.output
     assert "the robot had 0.058; the file was changed since" in done.output
@@ -283,6 +286,7 @@ def test_a_mission(apply, tmp_path: Path) -> None:
 def test_lines_of_a_launch_file_that_moved_since(tmp_path, monkeypatch, setting, names):
     """Where /b/limit stood there is /a/limit now: that one is never changed."""
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
     nodes = "".join(
         f'<node name="{name}" pkg="p" type="t">\n{setting}\n</node>\n' for name in names
     )
@@ -297,6 +301,8 @@ def test_lines_of_a_launch_file_that_moved_since(tmp_path, monkeypatch, setting,
     moved = f"{arguments}<!-- 1 -->\n<!-- 2 -->\n<!-- 3 -->\n{nodes}</launch>\n"
     launch.write_text(moved)
     done = CliRunner().invoke(main, ["apply", str(mission), "/b/limit", "9.0"])
+    assert "differs from the file that was recorded" in done.output
+    done = CliRunner().invoke(main, ["apply", str(mission), "/b/limit", "9.0", "--force"])
     other = setting.replace("1.0", "9.0").join(moved.rsplit(setting, 1))
     if done.exit_code:
         assert "changed since" in done.output

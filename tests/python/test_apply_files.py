@@ -13,7 +13,9 @@ from launch_samples import MANIFEST, MISSION_PARAMS, needs_roslaunch
 
 from pytpc.base.atomic import replace_file
 from pytpc.base.errors import RunError, TpcError
-from pytpc.ros.ros1.live_values import LiveChange, Robot, set_live
+from pytpc.ros.graphs import set_live
+from pytpc.ros.live_change import LiveChange
+from pytpc.ros.ros1.live_values import Robot
 from pytpc.values import apply
 from pytpc.values.apply import FileChange, apply_change
 from pytpc.values.installed import is_installed, of_the_system, source_of

@@ -142,7 +142,7 @@ def test_users_get_what_the_study_judges():
     case = Case(mission(), STATIC, clean, (changed,))
     alone = blame(mission(), STATIC)
     assert same(alone, METHODS["tpc"](case))
-    known = {"reference": clean}, {"changes": [Change("~gate", "", 0.9, 0.375)]}
+    known = {"references": [clean]}, {"changes": [Change("~gate", "", 0.9, 0.375)]}
     for method, beside in zip(("tpc+reference", "tpc+changes"), known, strict=True):
         found = blame(mission(), STATIC, Question(**beside))
         assert same(found, METHODS[method](case))
@@ -154,9 +154,9 @@ def test_users_get_what_the_study_judges():
 def test_a_good_run_and_the_changes_together():
     clean = Recording("clean", events([(1, 0, 0, 0.1, 0.9), (2, 1, 0, 1, 9)]), (), 0, ns(80))
     found = blame(
-        mission(), STATIC, Question(reference=clean, changes=[Change("safe", "", 5.0, 9.0)])
+        mission(), STATIC, Question(references=[clean], changes=[Change("safe", "", 5.0, 9.0)])
     )
-    assert blame(mission(), STATIC, Question(reference=clean)).accused == "~gate"
+    assert blame(mission(), STATIC, Question(references=[clean])).accused == "~gate"
     assert found.accused is None
     assert found.none > 0.5
 
@@ -188,11 +188,11 @@ def test_summaries_are_told():
     )
     found = blame(mission(summaries=builder.build()), STATIC)
     assert found.notes == (
-        "1,200 evaluations came as summaries (policy edges) and are not judged here; what the robot"
-        " waits for may be missed, so look at each mark, too",
+        "1,200 evaluations came as summaries, of which only the extremes and the last are judged;"
+        " TPC_POLICY=every reports them one by one",
     )
     only = Recording("m", events([]), MARKS, 0, ns(80), summaries=builder.build())
-    assert blame(only, STATIC).suspects == ()
+    assert [one.parameter for one in blame(only, STATIC).suspects] == ["~gate"]
 
 
 # ~gate turned at 30 s. To have it not turn before the marks it has to be above 34/80: so says the
@@ -236,7 +236,7 @@ def test_the_value_of_before_comes_first():
         "lower ~gate from 0.375 to 0.2 (the value before it was changed; the log alone points the"
         " other way)"
     )
-    assert tried(reference=clean).value == 0.9
+    assert tried(references=[clean]).value == 0.9
     found = blame(recording, STATIC)
     for nothing in (
         Change("gate", "", math.nan, 0.375),

@@ -62,6 +62,7 @@ def test_the_whole_command() -> None:
         "-DCMAKE_TOOLCHAIN_FILE=/opt/tpc/share/tpc/cmake/tpc.cmake",
         "-DCMAKE_BUILD_TYPE=RelWithDebInfo",
         "-DTPC_RULES=",
+        "-DTPC_BASE=/ws/.tpc",
         "-DPYTHON_EXECUTABLE=/usr/bin/python3",
         "--build-base",
         "/ws/.tpc/build",
@@ -121,6 +122,7 @@ def test_the_users_cmake_arguments_add_to_ours() -> None:
         f"-DCMAKE_TOOLCHAIN_FILE={TOOLCHAIN}",
         "-DCMAKE_BUILD_TYPE=RelWithDebInfo",
         "-DTPC_RULES=",
+        "-DTPC_BASE=/ws/.tpc",
         "-DPYTHON_EXECUTABLE=/usr/bin/python3",
         "-DFAULT=ON",
         "-DX=1",
@@ -475,6 +477,21 @@ def test_an_install_base_that_is_none_or_fails_is_one_line(tmp_path: Path) -> No
     with pytest.raises(RunError) as caught:
         workspace_env(tmp_path)
     assert str(caught.value) == f"{tmp_path}/setup.bash: fails with status 3: broken"
+
+
+# A Ctrl-C reaches all processes of the terminal's session. The 6th field of stat is the session.
+def test_a_set_up_script_is_out_of_reach_of_ctrl_c(tmp_path: Path) -> None:
+    text = "export OWN=$$ SESSION=$(cut -d ' ' -f 6 /proc/$$/stat)\n"
+    (tmp_path / "setup.bash").write_text(text, encoding="utf-8")
+    env = workspace_env(tmp_path)
+    assert env["SESSION"] == env["OWN"]
+
+
+def test_a_set_up_script_that_does_not_end(tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setattr(build, "_SET_UP_S", 0.5)
+    (tmp_path / "setup.bash").write_text("exec sleep 600\n", encoding="utf-8")
+    with pytest.raises(RunError, match=r"setup\.bash: does not end within"):
+        workspace_env(tmp_path)
 
 
 def fails_with_tpc(colcon: FakeColcon, *, without: str = "0") -> None:

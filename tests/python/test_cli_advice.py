@@ -59,10 +59,21 @@ def run(*arguments):
 # standard deviation 0.14826: below the smallest by that is 0.05174, but half of the 0.2 is enough.
 def test_what_is_printed(files):
     bag, static = files
-    result = run("suggest", bag, "--static", static)
+    result = run("suggest", bag, "--static", static, "--each")
     assert result.exit_code == 0, result.output
     lines = [text.strip() for text in result.stdout.splitlines() if text.strip()]
-    assert lines == [
+    title, verdict, *suspect = lines[:7]
+    assert title == "All 2 marks together: 2 of type II"
+    assert verdict.startswith("not sure: ")
+    assert suspect == [
+        "1  lower ~cover from 0.6 to 0.0999 (below 0.1: nearly all of 186 evaluations before the"
+        " marks go the other way)",
+        f"{verdict.partition('then ~cover (')[2].removesuffix(')')} that it is this one",
+        "src/node.cpp:11  if (value > \N{REPLACEMENT CHARACTER}[31mcover_) {",
+        f"0.0999 answers 2 of 2 {AWAY} 4 of 190 decisions (2.1 %)",
+        "the smallest change: lower ~cover from 0.6 to 0.299 (below 0.3)",
+    ]
+    assert lines[7:] == [
         "2 marks at 8.5 and 18.5 s: type II, does not do what it should",
         "not enough evidence: only ~cover had been compared up to the mark",
         "1  lower ~cover from 0.6 to 0.0999 (below 0.1: nearly all of 186 evaluations before the"
@@ -113,7 +124,7 @@ def test_a_value(files):
 def test_types_and_top(files):
     bag, static = files
     for types in ("believe", "doubt", "ignore"):
-        result = run("suggest", bag, "--static", static, "--types", types, "--top", 1)
+        result = run("suggest", bag, "--static", static, "--types", types, "--top", 1, "--each")
         assert result.exit_code == 0
         assert "~cover" in result.stdout
     assert "2 marks at 8.5 and 18.5 s: no type" in result.stdout
@@ -127,7 +138,7 @@ def test_without_marks(tmp_path, files):
             writer.log(t, "/uav", line(1, 0, 0.3, 0.6))
     result = run("suggest", bag, "--static", static)
     assert result.exit_code == 1
-    assert "no marks: add some with `pytpc mark`, or ask for a --value" in result.stderr
+    assert "or ask for a --value" in result.stderr
     value = run("suggest", bag, "cover", "--static", static, "--value", "0.1")
     assert (
         "0.1 is replayed without a mark; away from marks it turns 8 of 8 decisions" in value.stdout
@@ -162,23 +173,25 @@ def test_values_as_they_are_typed(files):
 
 
 # One says that it was of type I. All together come first, with the suspect of the mission, which is
-# ~cover for type II: the value is that of the marks of this type.
+# ~cover for type II: the value is that of the marks of this type. It answers all three, and the
+# sentence does not say that they are of one type.
 def test_marks_that_do_not_agree(files):
     bag, static = files
     (bag.parent / "m.bag.marks.csv").write_text("time_ns,type,observer,note\n15000000000,I,eve,\n")
     words = ("suggest", bag, "cover", "--static", static)
-    title, verdict, first, *rest = run(*words[:2], *words[3:]).stdout.splitlines()
+    title, verdict, first, *rest = run(*words[:2], *words[3:], "--each").stdout.splitlines()
     assert title.rstrip() == "All 3 marks of 2 observers together: 1 of type I, 2 of type II"
     assert verdict.startswith("  not sure: most likely none of the parameters")
     assert first.startswith("  1  lower ~cover from 0.6 to 0.0999 (below 0.1: nearly all of 186")
-    titles = [line.rstrip() for line in rest if not line.startswith(" ")]
+    titles = [line for line in rest if line and not line.startswith(" ")]
     assert titles == [
         "2 marks at 8.5 and 18.5 s: type II, does not do what it should",
         "1 mark at 14.0 s: type I, did what it should not",
     ]
+    assert any(line.startswith("     0.0999 answers 3 of 3 marks; away") for line in rest)
     one = run(*words).stdout.splitlines()
     assert one[0] == title
-    assert one[1].rstrip().endswith("% that it is ~cover")
+    assert one[2].rstrip().endswith("% that it is this one")
     together = json.loads(run(*words, "--json").stdout)["together"]
     assert together["suspects"][0]["remedy"]["value"] == 0.0999
 
@@ -224,3 +237,25 @@ def test_a_good_run_and_what_was_flown(files, tmp_path):
     assert group["suspects"][0]["remedy"]["value"] == 0.0999
     refused = run("suggest", bag, "--static", static, "--flown", 1)
     assert "--flown needs a PARAMETER" in refused.output
+
+
+# As `origin`, `apply` and `explain` take it: the end of a name is enough if it is that of one.
+def test_the_end_of_a_name_is_enough(tmp_path):
+    names = ("~detector/hits", "~detector/confidence", "~tracker/confidence")
+    with BagFile(tmp_path / "m.bag") as writer:
+        for second in range(1, 10):
+            for number in range(3):
+                writer.log(second, "/uav", line(number, 0, second / 20, 0.6))
+        writer.mark(8, "/mark_no_action")
+    comparisons = [comparison(number, name) for number, name in enumerate(names)]
+    StaticInfo.of([link_unit(comparisons)]).save(tmp_path / "static.json")
+    static = ("--static", tmp_path / "static.json")
+    for more in ((), ("--value", "0.1")):
+        found = run("suggest", tmp_path / "m.bag", "hits", *static, *more)
+        assert (found.exit_code, "~detector/hits" in found.stdout) == (0, True), found.output
+    found = run("suggest", tmp_path / "m.bag", "confidence", *static)
+    assert (found.exit_code, found.stderr) == (
+        1,
+        "pytpc: error: several end with confidence; give one of: ~detector/confidence,"
+        " ~tracker/confidence\n",
+    )

@@ -53,6 +53,12 @@ def text_of(page):
     return " ".join("".join(Page(page.read_text()).text).split())
 
 
+def mark(seconds, kind):
+    """A mark as all commands print it; the recording begins at 1 s."""
+    time_ns = round((seconds + 1) * 1e9)
+    return {"time_ns": time_ns, "seconds": seconds, "type": kind, "observer": "", "note": ""}
+
+
 def test_a_page_is_written_of_a_folder(files, tmp_path):
     folder, static = files
     page = tmp_path / "r.html"
@@ -60,16 +66,29 @@ def test_a_page_is_written_of_a_folder(files, tmp_path):
     assert result.exit_code == 0
     said = json.loads(result.stdout)
     assert said["bytes"] == page.stat().st_size
+    diagnosis = said["missions"][0].pop("diagnosis")
+    assert diagnosis["suspects"][0]["parameter"] == "~faces"
     assert said["missions"] == [
         {
+            "mission": "night flight",
             "name": "night flight",
             "marks": [
-                {"seconds": 15.0, "type": "I", "first": "~faces", **ENOUGH},
-                {"seconds": 19.0, "type": "II", "first": "~coverage", **ENOUGH},
+                {**mark(15.0, "I"), "first": "~faces", **ENOUGH},
+                {**mark(19.0, "II"), "first": "~coverage", **ENOUGH},
             ],
         }
     ]
     assert "night flight" in text_of(page)
+
+
+def test_the_page_of_one_folder_is_in_it_and_others_are_here(files, tmp_path, monkeypatch):
+    folder, static = files
+    monkeypatch.chdir(tmp_path)
+    assert run("report", folder, "--static", static).exit_code == 0
+    assert (folder / "report.html").is_file()
+    assert not (tmp_path / "report.html").exists()
+    assert run("report", folder / "mission.bag", "--static", static).exit_code == 0
+    assert (tmp_path / "report.html").is_file()
 
 
 def test_top_is_how_many_cards_a_mark_has(files, tmp_path):
@@ -102,7 +121,13 @@ def test_what_was_done_to_the_robot_and_where_values_came_from(files, tmp_path):
     origin = Origin("/uav/coverage", "yaml", 0.6, tmp_path / "c" / "p.yaml", 4, "coverage: 0.6")
     write_origins({}, {origin.name: origin}, folder / ORIGINS_FILE)
     page = tmp_path / "r.html"
-    assert run("report", folder, "--static", static, "-o", page).exit_code == 0
+    arguments = ("report", folder, "--static", static, "-o", page)
+    assert run(*arguments).exit_code == 0
+    # What only a study knows is not on a user's page.
+    text = text_of(page)
+    assert "takes off" not in text
+    assert "changed" not in page.read_text().partition("<main>")[2].partition("Each mark")[0]
+    assert run(*arguments, "--with-treatment").exit_code == 0
     text = text_of(page)
     assert "night flight It <never> takes off." in text
     assert "The changed parameter's position: 1." in text
@@ -118,7 +143,9 @@ def test_a_broken_treatment_is_named(files, tmp_path, document):
     folder, static = files
     path = folder / "treatment.json"
     path.write_text(json.dumps(document))
-    result = run("report", folder, "--static", static, "-o", tmp_path / "r.html")
+    arguments = ("report", folder, "--static", static, "-o", tmp_path / "r.html")
+    assert run(*arguments).exit_code == 0
+    result = run(*arguments, "--with-treatment")
     assert result.exit_code == 1
     assert f"{path}: effect must be a text" in result.stderr
 
@@ -154,7 +181,8 @@ def test_without_marks_it_says_what_to_do(files, tmp_path):
         writer.log(2, "/uav", line(1, 0, 0.3, 0.6))
     page = tmp_path / "r.html"
     assert run("report", bag, "--static", static, "-o", page).exit_code == 0
-    assert "This recording has no marks. Add some with `pytpc mark`." in text_of(page)
+    assert "No marks, so no verdict." in text_of(page)
+    assert f"Add marks with pytpc mark {bag}, and write this page again." in text_of(page)
 
 
 def test_open_shows_the_page(files, tmp_path, monkeypatch):
@@ -186,8 +214,8 @@ def test_another_build_is_told(files, tmp_path):
     result = run("report", folder, "--static", other, "-o", tmp_path / "r.html")
     assert result.exit_code == 1
     assert (
-        "the static information knows none of its reports: it is of another build; give the"
-        " static.json of the build that was recorded"
+        "the static information knows none of its reports: it is of another build; give the one"
+        " that was recorded, with --static WORKSPACE or --static FILE"
     ) in result.stderr
     assert not (tmp_path / "r.html").exists()
 

@@ -73,7 +73,7 @@ def test_collect_of_a_folder_without_any_writes_nothing(tmp_path: Path) -> None:
     result = run("collect", tmp_path, "-o", tmp_path / "static.json")
     assert result.exit_code == 1
     assert result.stderr == (
-        f"pytpc: error: {tmp_path}: no static information here; build with `pytpc build`\n"
+        f"pytpc: error: {tmp_path}: no static information here; run `pytpc build {tmp_path}`\n"
     )
     assert list(tmp_path.iterdir()) == []
 
@@ -246,7 +246,7 @@ def test_what_is_filtered_is_said(shared: Path) -> None:
     result = run("list", shared, "--package", "fac")
     assert (result.exit_code, result.stderr) == (
         1,
-        "pytpc: error: no package fac in this static information; there are: face\n",
+        "pytpc: error: no package fac in this static information; did you mean face?\n",
     )
 
 

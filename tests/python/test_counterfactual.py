@@ -386,9 +386,36 @@ def test_a_suggestion_answers_its_mark(cmps, relation, kind):
     found = comparison(0, "~limit", relation)
     said = smallest_change(recorded, static_info(found), found, At(recorded.marks[0].time_ns, kind))
     if said.value is None:
-        assert kind == "I"
+        assert kind == "I" or "the other sign" in said.reason
         return
     assert (
         what_if(recorded, static_info(found), "limit", said.value, Question(kind=kind)).answered
         == 1
     )
+
+
+# `cmp < limit` was True at 10, 40 and 99.5 s, and False else. At 0.1 it is never True: 3 of 6 turn,
+# two of them where nobody complained. At 0.45 the one at 99.5 s alone turns.
+def test_a_value_that_stops_everything_says_so():
+    cmps = [(10, 0.4), (20, 0.9), (40, 0.4), (60, 0.9), (99, 0.9), (99.5, 0.48)]
+    recorded = mission([(t, 0, cmp < 0.5, cmp, 0.5) for t, cmp in cmps], [Mark(ns(100), "I")])
+    static = static_info(comparison(0, "~limit", "<"))
+    found = what_if(recorded, static, "limit", 0.1, Question(kind="I"))
+    assert (found.stops, found.answered, found.flipped_away) == (True, 1, 2)
+    assert found.text.endswith(
+        "; it would stop what src/node.cpp:10 decides altogether: all 6 evaluations would go the"
+        " same way"
+    )
+    less = what_if(recorded, static, "limit", 0.45, Question(kind="I"))
+    assert (less.stops, less.answered, less.flipped_away) == (False, 1, 0)
+    # A mark of type II asks for another outcome, and not for less.
+    assert not what_if(recorded, static, "limit", 0.1, Question(kind="II")).stops
+
+
+# The two changes near the marks are all that happened: nothing but the errors would go away.
+def test_a_value_that_only_prevents_the_errors_stops_nothing():
+    cmps = [(10, 0.9), (20, 0.9), (95, 0.4), (96, 0.9), (99, 0.4)]
+    recorded = mission([(t, 0, cmp < 0.5, cmp, 0.5) for t, cmp in cmps], [Mark(ns(100), "I")])
+    static = static_info(comparison(0, "~limit", "<"))
+    found = what_if(recorded, static, "limit", 0.1, Question(kind="I"))
+    assert (found.stops, found.answered, found.flipped_near) == (False, 1, 2)

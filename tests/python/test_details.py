@@ -31,7 +31,15 @@ def test_arithmetic_in_words(transform: Transform, words: str) -> None:
 
 @pytest.mark.parametrize(
     ("default", "shown"),
-    [(None, "none in the source"), (True, "true"), (1, "1"), (0.25, "0.25"), ("left", '"left"')],
+    [
+        (None, "none in the source"),
+        (True, "true"),
+        (1, "1"),
+        (0.25, "0.25"),
+        # 0.2f, as the analysis finds it.
+        (0.20000000298023224, "0.2"),
+        ("left", '"left"'),
+    ],
 )
 def test_defaults_as_they_are_written(default: Any, shown: str) -> None:
     assert shown_default(default) == shown

@@ -24,7 +24,7 @@ from pytpc.diagnosis.ranking.other_values import (
     diagnose_replayed,
     of_change,
     of_changes,
-    of_reference,
+    of_references,
 )
 from pytpc.diagnosis.ranking.posterior import (
     MARKS_I,
@@ -320,10 +320,15 @@ def test_a_good_run_tells_which_threshold_is_another():
     tpcs = Tpcs.of(STATIC)
     here = events([(1, 0, 0, 1, 4), (1, 1, 0, 1, 4), (1, 2, 0, 1, 4), (2, 2, 0, 1, 5)])
     there = events([(1, 0, 0, 1, 2), (1, 1, 0, 1, 4), (1, 2, 0, 1, 4)])
-    prior = dict(zip(tpcs.names, of_reference(tpcs, here, there), strict=True))
+    prior = dict(zip(tpcs.names, of_references(tpcs, here, [there]), strict=True))
     assert prior["~gate"] == 0.0
     assert prior["~noisy"] == UNCHANGED
-    assert prior["~safe"] == prior["~never"] == UNCHANGED / 2
+    # Nothing is known of what changed in a run, or was not compared.
+    assert np.isnan([prior["~safe"], prior["~never"]]).all()
+    # It kept its value if one of the runs had it.
+    runs = [there, events([(1, 0, 0, 1, 4)]), there]
+    gate = of_references(tpcs, here, runs)[tpcs.names.index("~gate")]
+    assert gate == UNCHANGED
 
 
 def test_a_prior_moves_the_order():

@@ -6,11 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from pytpc.base.paths import BUILD_TOOLS, ros_places
+from pytpc.base.paths import COLCON_EXTENSIONS, build_tools, ros_places
 from pytpc.workspace.doctor import machine as doctor_machine
 from pytpc.workspace.doctor.finding import Finding, Severity, by_severity, error, note, warning
 from pytpc.workspace.doctor.machine import (
-    COLCON_EXTENSIONS,
     UNSUITED,
     InstalledProgram,
     Machine,
@@ -26,7 +25,7 @@ SOUND = Machine(
         name: InstalledProgram(
             Path("/usr/bin", name), (3, 25, 1) if name == "cmake" else (19, 1, 7)
         )
-        for name in BUILD_TOOLS
+        for name in build_tools()
     },
     python=Path("/usr/bin/python3"),
     modules={"em": "3.3.4", "catkin_pkg": "0.5.2"},
@@ -81,8 +80,21 @@ CASES = [
     (
         replace(SOUND, python=Path("/opt/conda/bin/python3")),
         N,
-        "the first python3 on PATH",
-        "PYTHON_EXEC",
+        "the first python3 on PATH is not the system's; `pytpc build`, `record` and `run` use"
+        " /usr/bin/python3 all the same",
+        'export PATH="/usr/bin:$PATH"',
+    ),
+    (
+        replace(SOUND, python=Path("/home/ana/.pyenv/shims/python3")),
+        N,
+        "the first python3 on PATH is pyenv's; `pytpc build`",
+        'export PATH="/usr/bin:$PATH"',
+    ),
+    (
+        replace(env(VIRTUAL_ENV="/home/ana/venv"), python=Path("/home/ana/venv/bin/python3")),
+        N,
+        "is that of a virtual environment;",
+        "deactivate",
     ),
     (
         replace(SOUND, missing_parts=("share/tpc/flags",)),
@@ -92,6 +104,25 @@ CASES = [
     ),
     (replace(SOUND, trial="undefined symbol: x"), E, "with TPC: undefined symbol: x", "make setup"),
     (replace(SOUND, ros={"catkin": Path("/usr")}), W, "roscpp of ROS 1 not found", "libroscpp-dev"),
+    (
+        replace(SOUND, unlinked=("libroscpp.so.4d",)),
+        E,
+        "built for another ROS: libroscpp.so.4d not found",
+        " -DCMAKE_CXX_COMPILER=clang++-19 -DCMAKE_INSTALL_PREFIX=/opt/tpc ",
+    ),
+    (
+        replace(SOUND, unlinked=("libroscpp.so.4d",), prefix=Path("/opt/a b")),
+        E,
+        "built for another ROS",
+        "-S '/opt/a b'/share/tpc/runtime_log -B $build ",
+    ),
+    # Where there is no ROS 1, the library was not built for another one: its core needs none.
+    (
+        replace(SOUND, unlinked=("libroscpp.so.4d",), ros={}),
+        W,
+        "catkin and roscpp of ROS 1 not found: catkin packages cannot be built",
+        "libroscpp-dev",
+    ),
     (env(CXX="g++"), N, "CXX=g++ is ignored", "unset CXX"),
     (env(CFLAGS="-O2 -fsanitize=address,undefined"), W, "-fsanitize=address,undefined", "unset"),
     (env(LDFLAGS="-static"), W, "-static cannot be combined", "unset LDFLAGS"),
@@ -102,6 +133,12 @@ CASES = [
     (replace(SOUND, ccache={"compiler_check": "none"}), W, "ccache ignores", "=mtime"),
     (replace(SOUND, ccache={"run_second_cpp": "false"}), W, "preprocessed", "=true"),
 ]
+
+
+# On Debian /bin is a link to /usr/bin.
+def test_the_systems_python_under_another_name_is_no_finding(tmp_path: Path) -> None:
+    (tmp_path / "bin").symlink_to("/usr/bin")
+    assert check_machine(replace(SOUND, python=tmp_path / "bin/python3")) == []
 
 
 @pytest.mark.parametrize(("machine", "severity", "what", "mend"), CASES)

@@ -264,6 +264,11 @@ def test_what_is_installed_is_looked_for(
     add_package(tmp_path / "overlay/share/claw")
     monkeypatch.setenv("CMAKE_PREFIX_PATH", str(tmp_path / "overlay"))
     assert "claw" in look_at_known(workspace).packages
+    # A package of ROS 2 is of no use to one of ROS 1 that needs its name.
+    index = tmp_path / "overlay/share/ament_index/resource_index/packages"
+    index.mkdir(parents=True)
+    (index / "claw").touch()
+    assert "claw" not in look_at_known(workspace).packages
 
 
 # --- the command
@@ -273,7 +278,7 @@ def test_what_is_installed_is_looked_for(
 def sound(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """A machine with nothing wrong, and one package of an installed half."""
     monkeypatch.setattr(machine_commands, "look_at_machine", lambda _folder: Machine())
-    monkeypatch.setattr(machine_commands, "check_machine", lambda _machine: [])
+    monkeypatch.setattr(machine_commands, "check_machine", lambda _machine, **_: [])
     monkeypatch.setenv("TPC_PREFIX", str(tmp_path / "prefix"))
     install_prefix(tmp_path / "prefix")
 

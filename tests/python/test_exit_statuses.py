@@ -31,6 +31,7 @@ STATIC = EXAMPLE / "static.json"
 INPUT = "INPUT"
 RECORDINGS: Mapping[str, Sequence[str]] = {
     "convert": (INPUT, "-o", "out"),
+    "diff": (str(EXAMPLE), INPUT, "--static", str(STATIC)),
     "mark": (INPUT,),
     "marks": (INPUT,),
     "rank": (INPUT, "--static", str(STATIC)),
@@ -42,6 +43,7 @@ RECORDINGS: Mapping[str, Sequence[str]] = {
 STATICS: Mapping[str, Sequence[str]] = {
     "blind-spots": (INPUT,),
     "coverage": (INPUT,),
+    "diff": (str(EXAMPLE), str(EXAMPLE), "--static", INPUT),
     "explain": (INPUT, "~limit"),
     "export": (INPUT, "--html", "out.html"),
     "list": (INPUT,),

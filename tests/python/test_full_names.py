@@ -60,6 +60,19 @@ def test_two_objects_with_names_of_their_own_leave_it_open():
     assert with_full_names(given, mission([(1, 1, 0, 1, 2)], [NAMED, other]), {}) is given
 
 
+@pytest.mark.parametrize(
+    "api", ["rclpy.node.Node.declare_parameter", "rclcpp::Node::get_parameter"]
+)
+@pytest.mark.parametrize("said", [[], [replace(NAMED, name=f"{NODE}/radius")]])
+def test_a_parameter_of_ros2_is_the_nodes_own(api, said):
+    read = replace(read_at(3, "radius"), api=api)
+    given = static(comparison(1, "radius"), reads=[read])
+    assert sources(with_full_names(given, mission([(1, 1, 0, 1, 2)], said), {})) == ["~radius"]
+    # In ROS 1 it is one of the node's namespace.
+    old = static(comparison(1, "radius"), reads=[read_at(3, "radius")])
+    assert sources(with_full_names(old, mission([(1, 1, 0, 1, 2)]), {})) == ["radius"]
+
+
 LOCAL, GLOBAL = "/move_base/local/radius", "/move_base/global/radius"
 
 
@@ -194,6 +207,8 @@ def test_the_objects_of_a_good_run_get_the_keys_of_the_mission():
     found = with_keys_of(good, given, named)
     assert found.events.keys == (instance(1, 2), key(1), instance(1, 3))
     assert found.events.key.tolist() == good.events.key.tolist()
+    # Commands that share a question ask for it several times.
+    assert with_keys_of(found, given, named) is found
     # The same order in both runs, and runs without instances, stay as they are.
     assert with_keys_of(told, given, named) is told
     plain = Recording("plain", rows_of(key(1)), (), 0, 1)

@@ -130,7 +130,7 @@ def test_each_report_is_counted_once(tmp_path):
     ]
     assert sorted(counted) == sorted(4 * [("/uav", key(1)), ("/far", key(2)), ("/brain", key(3))])
     assert recording.notes[:2] == (
-        "4 reports on /rosout_agg of nodes that report on /rosout too: counted once",
+        "4 reports on /rosout_agg that the node rosout copied from /rosout: counted once",
         "8 reports on /threshold_information with keys that are in the log messages too:"
         " counted once",
     )
@@ -221,7 +221,7 @@ def test_every_truncation_is_one_line(tmp_path):
         text = str(caught.value)
         assert text.startswith(f"{path}: ")
         assert "\n" not in text
-        assert "truncated" in text or text == f"{path}: the file is empty"
+        assert "truncated" in text or text.startswith(f"{path}: the file is empty")
         if size > 13:
             assert f"{size}" in text
             assert "byte" in text
@@ -264,7 +264,7 @@ def test_flipped_bytes_never_end_in_a_traceback(tmp_path, seed):
 
 def test_files_that_are_no_bags(tmp_path):
     path = tmp_path / "x.bag"
-    with pytest.raises(InputError, match=r"x\.bag: no such bag, file or folder$"):
+    with pytest.raises(InputError, match=r"x\.bag: no such bag, file or folder"):
         read(path)
     path.write_text("#ROSBAG V1.2\n")
     with pytest.raises(InputError, match=r'not a ROS 1 bag: "#ROSBAG V2\.0" is not at byte 0'):

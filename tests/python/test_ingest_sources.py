@@ -15,8 +15,8 @@ from test_mission import log
 from tpc_file import TpcFile, report, site, sync
 
 from pytpc.base.errors import InputError
-from pytpc.ingest.bag import _DECODERS
 from pytpc.ingest.bag_chunks import ChunkMessages as Chunk
+from pytpc.ingest.decoders import ROS1
 from pytpc.ingest.gathering import Gathering
 from pytpc.ingest.messages import Messages
 from pytpc.ingest.reading import read
@@ -65,7 +65,7 @@ def ros2(request, tmp_path):
 
 def test_ros2(ros2):
     recording = read(ros2)
-    assert found(recording) == [(ns(10.5), "uav", key(1), 0.2), (ns(12.9), "", key(2), 3)]
+    assert found(recording) == [(ns(10.5), "/uav", key(1), 0.2), (ns(12.9), "", key(2), 3)]
     assert recording.marks == (Mark(ns(13.5), "II", "marks1"),)
     assert recording.malformed == 1
     assert recording.malformed_first[0].topic == "/rosout"
@@ -257,6 +257,25 @@ def test_what_is_nothing_that_is_read(tmp_path):
         read(tmp_path / "empty")
 
 
+# Logs alone may be of anything, such as the `log` folder of a workspace.
+def test_a_folder_of_missions_names_them(tmp_path):
+    for number in range(8):
+        (tmp_path / f"out/day{number}").mkdir(parents=True)
+        (tmp_path / f"out/day{number}/run.json").write_text("{}")
+    for name in ("bags/one/a.bag", "bags/log/build.log", "bags/notes.txt.d/x"):
+        (tmp_path / name).parent.mkdir(parents=True)
+        (tmp_path / name).write_bytes(b"")
+    with pytest.raises(InputError) as error:
+        read(tmp_path / "out")
+    days = ", ".join(f"{tmp_path}/out/day{number}" for number in range(6))
+    assert str(error.value) == (
+        f"{tmp_path}/out: no recordings in this folder; give one of the 8 below it: {days}"
+        " and 2 more"
+    )
+    with pytest.raises(InputError, match=f"; give the one below it: {tmp_path}/bags/one$"):
+        read(tmp_path / "bags")
+
+
 # --- batches, summaries and drops in messages
 
 
@@ -310,6 +329,21 @@ def test_a_sink_that_is_changed_meanwhile(tmp_path):
         bag.text(12, "/threshold_information", "/uav", batch)
     recording = read(path)
     assert [cmp for *_, cmp in found(recording)] == [1, 3]
+
+
+# `rosbag record -a` has both topics; the rosout node passes batches on like any message.
+def test_a_batch_on_both_topics_is_counted_once(tmp_path):
+    path = tmp_path / "all.bag"
+    batch = "threshold_batch:#seq:0,count:1,dropped:0,pid:9,steady:1.0\n"
+    batch += stamped("10.5", 1, 1, 3, 2)
+    with BagFile(path) as bag:
+        bag.log(11, "/uav", batch)
+        bag.log(11, "/uav", batch, topic="/rosout_agg")
+    recording = read(path)
+    assert [cmp for *_, cmp in found(recording)] == [3]
+    assert recording.notes == (
+        "1 report on /rosout_agg that the node rosout copied from /rosout: counted once",
+    )
 
 
 def test_summaries_and_drops_on_rosout(tmp_path):
@@ -514,7 +548,7 @@ def test_marks_of_all_kinds(tmp_path):
 )
 def test_number_that_only_rosout_got_is_no_loss(numbers, lost, at_once):
     gathering = Gathering()
-    messages = Messages(gathering, "x", _DECODERS, latched={b"/a"})
+    messages = Messages(gathering, "x", ROS1, latched={b"/a"})
     raw = [log(b"/a", number) for number in numbers]
     if at_once:
         ends = np.cumsum([len(data) for data in raw])
@@ -542,7 +576,7 @@ def test_number_that_only_rosout_got_is_no_loss(numbers, lost, at_once):
 @pytest.mark.parametrize("odd", [False, True])
 def test_loss_is_told_by_who_numbers(tmp_path, sent, lost, odd):
     gathering = Gathering()
-    messages = Messages(gathering, "x", _DECODERS)
+    messages = Messages(gathering, "x", ROS1)
     raw = [log(node.encode(), number) for _, node, number in sent]
     if odd:
         for (sender, _, _), data in zip(sent, raw, strict=True):

@@ -7,9 +7,11 @@ from pathlib import Path
 
 import pytest
 import yaml
+from click.testing import CliRunner
 from launch_samples import environment, make_package, needs_roslaunch
 
 from pytpc.base.errors import InputError, MissingToolError
+from pytpc.cli.main import main
 from pytpc.values.recording import origins_of, try_trace
 from pytpc.values.target import Target, read_target
 from pytpc.values.trace import name_on_server, roslaunch_python, trace_launch
@@ -216,6 +218,29 @@ def test_hard_cases(tmp_path):
     assert {name: value[0] for name, value in found.items()} == {
         name: value for name, value in wanted.items() if name not in ("/rosdistro", "/rosversion")
     }
+
+
+@needs_roslaunch
+@pytest.mark.parametrize("command", ["apply", "origin"])
+def test_a_package_of_a_workspace_that_is_not_sourced(tmp_path, monkeypatch, command):
+    for name in ("ROS_PACKAGE_PATH", "CMAKE_PREFIX_PATH"):
+        monkeypatch.delenv(name, raising=False)
+    launch = tmp_path / "ws/src/robot/robot.launch"
+    launch.parent.mkdir(parents=True)
+    launch.write_text("<launch><include file='$(find my_camera)/camera.launch'/></launch>")
+    words = [str(launch), "/x", *(["1"] if command == "apply" else [])]
+
+    def said():
+        result = CliRunner().invoke(main, [command, *words])
+        assert result.exit_code == 1
+        return result.stderr
+
+    what = (
+        "it needs the package my_camera, which no sourced workspace has; give the built workspace"
+    )
+    assert said() == f"pytpc: error: {launch}: {what} that has it: --workspace WORKSPACE\n"
+    (tmp_path / "ws/.tpc").mkdir()
+    assert said().endswith(f"that has it: --workspace {tmp_path}/ws\n")
 
 
 @needs_roslaunch

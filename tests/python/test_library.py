@@ -162,11 +162,12 @@ def test_paths_do_as_well_as_objects(tmp_path: Path):
     assert "Treatment Type II" in str(table)
     page = pytpc.write_report(tmp_path / "page.html", rankings)
     assert "~min_coverage_limit" in page.read_text()
-    # What had been done to the robot is in the mission's folder, and not in the recording.
+    # What had been done to the robot is in the mission's folder: only a study shows it.
     effect = "The UAV hovers in front of the person and never takes the picture."
-    assert effect in page.read_text()
+    assert effect not in page.read_text()
+    assert effect in pytpc.write_report(page, rankings, with_treatment=True).read_text()
     read = pytpc.rank(pytpc.read(EXAMPLE), EXAMPLE / "static.json")
-    assert effect not in pytpc.write_report(tmp_path / "other.html", read).read_text()
+    assert effect not in pytpc.write_report(page, read, with_treatment=True).read_text()
 
 
 # The example shows lines of the sources beside it, which may have been edited since.

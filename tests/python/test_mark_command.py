@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from mission_samples import BagFile, line, ns
 
+from pytpc.ingest.reading import read
 from pytpc.recording.marks import Mark, marks_beside, read_marks, write_marks
 from terminals import Terminal, pytpc
 
@@ -87,6 +88,18 @@ def test_a_terminal_that_is_gone(bag: Path, tmp_path: Path):
         os.close(terminal.master)
         assert terminal.process.wait(10) != 0
     assert read_marks(marks_beside(bag)) == (Mark(ns(100), "II"),)
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_a_note_that_a_signal_interrupts_is_kept(bag: Path, tmp_path: Path, number: signal.Signals):
+    with Terminal(pytpc("mark", str(bag)), tmp_path) as terminal:
+        terminal.wait_for("stopped")
+        terminal.press("2n")
+        terminal.wait_for("note: _")
+        terminal.press("laut")
+        terminal.wait_for("note: laut_")
+        assert terminal.end(number) == 128 + number
+    assert read_marks(marks_beside(bag)) == (Mark(ns(100), "II", "", "laut"),)
 
 
 def test_two_observers_at_once_and_again(bag: Path, tmp_path: Path):
@@ -178,6 +191,31 @@ def test_a_mark_that_cannot_be_saved_is_kept(bag: Path, tmp_path: Path):
         assert "NOT SAVED" in terminal.text
 
 
+def test_a_session_without_a_mark_leaves_no_file(bag: Path, tmp_path: Path):
+    with Terminal(pytpc("mark", str(bag)), tmp_path) as terminal:
+        terminal.wait_for("0 marks")
+        terminal.press("q")
+        terminal.wait_for("nothing was marked")
+        assert terminal.wait() == 0
+    assert not marks_beside(bag).exists()
+
+
+# The file for new marks is not there: the mark is in one that an older version wrote.
+def test_a_mark_in_another_file_of_the_recording_is_counted(bag: Path, tmp_path: Path):
+    folder = tmp_path / "mission"
+    folder.mkdir()
+    bag.rename(folder / "mission.bag")
+    (folder / "run.json").write_text("{}")
+    older = folder.with_name("mission.marks.csv")
+    write_marks((Mark(ns(101), "II", "", ""),), older)
+    with Terminal(pytpc("mark", str(folder)), tmp_path) as terminal:
+        terminal.wait_for("1 mark")
+        terminal.press("q")
+        terminal.wait_for("1 mark:")
+        assert terminal.wait() == 0
+        assert "nothing was marked" not in terminal.text
+
+
 def test_a_namespace_that_ros_has_not(tmp_path: Path):
     done = subprocess.run(
         pytpc("mark", "--observer", "no good"),
@@ -200,3 +238,47 @@ def test_marks_of_others_stay_in_the_file(bag: Path, tmp_path: Path):
         terminal.press("3q")
         assert terminal.wait() == 0
     assert read_marks(marks_beside(bag)) == (Mark(ns(100), None), *others)
+
+
+# Each in a terminal of their own, and each names the mission in another way.
+def test_two_observers_of_a_folder_and_of_the_bag_in_it(bag: Path, tmp_path: Path):
+    (tmp_path / "run.json").write_text("{}")
+    with (
+        Terminal(pytpc("mark", ".", "--observer", "marks0"), tmp_path) as one,
+        Terminal(pytpc("mark", str(bag), "--observer", "marks1"), tmp_path) as two,
+    ):
+        for terminal in (one, two):
+            terminal.wait_for("stopped")
+        one.press("12uq")
+        two.press("\x1b[C2q")
+        for terminal in (one, two):
+            assert terminal.wait() == 0
+        assert "1 mark: marks.csv" in one.text
+    found = (Mark(ns(100), "I", "marks0"), Mark(ns(105), "II", "marks1"))
+    assert read_marks(tmp_path / "marks.csv") == found
+    assert read(bag).marks == read(tmp_path).marks == found
+
+
+def test_a_file_of_ones_own_is_told_how_to_be_read(bag: Path, tmp_path: Path):
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    with Terminal(pytpc("mark", str(bag), "-o", "elsewhere/m"), tmp_path, columns=400) as terminal:
+        terminal.wait_for("stopped")
+        terminal.press("1q")
+        assert terminal.wait() == 0
+        assert f"pytpc rank {bag} --marks elsewhere/m" in terminal.text
+    assert read(bag).marks == ()
+
+
+def test_a_person_is_told_that_a_copy_has_marks_of_its_own(bag: Path, tmp_path: Path) -> None:
+    def said(*words: str) -> str:
+        with Terminal(pytpc(*words), tmp_path, columns=200) as terminal:
+            assert terminal.wait() == 0
+            return terminal.text
+
+    copied = said("convert", str(bag), "-o", "copy")
+    assert f"copy has marks of its own from now on: what is marked in {bag} later" in copied
+    added = "a copy that `pytpc convert` made before does not have this mark"
+    assert added in said("marks", str(bag), "--add", "1", "I")
+    assert added not in said("marks", "copy", "--add", "1", "I")
+    assert "of its own" not in said("convert", "copy", "-o", "copy")

@@ -8,6 +8,7 @@ import shutil
 import struct
 import subprocess
 import threading
+import time
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path
@@ -23,7 +24,8 @@ from rich.console import Console
 from rosbags.highlevel import AnyReader
 
 from pytpc.api.record import sink_settings
-from pytpc.base.errors import InputError, RunError
+from pytpc.base.errors import InputError, MissingToolError, RunError
+from pytpc.cli.main import main
 from pytpc.cli.mission_commands import record_command
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.ingest.losses import LossCounter
@@ -32,6 +34,7 @@ from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Dropped, Recording
 from pytpc.ros.mission_run import (
     MissionRun,
+    Progress,
     RecorderStatus,
     RecordOptions,
     clear_earlier,
@@ -39,13 +42,15 @@ from pytpc.ros.mission_run import (
     save_run,
     save_status,
 )
+from pytpc.ros.ros1 import param_dump
 from pytpc.ros.ros1.bag_file import BagFile
 from pytpc.ros.ros1.graph import GraphProcess, RosGraph
 from pytpc.ros.ros1.master import Master
+from pytpc.ros.ros1.param_dump import dump_params
 from pytpc.ros.ros1.record_mission import launch_command, record_graph, run_mission
 from pytpc.ros.ros1.recorder import Discovery, Recorder
 from pytpc.ros.ros1.relay import Relay
-from pytpc.ros.ros1.subscriber import Source
+from pytpc.ros.source import Source
 from pytpc_evaluation.demo.demo import TreatedMission, failures, result_table
 from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER, Example
 from pytpc_evaluation.treatment import Treatment, load_treatment
@@ -186,8 +191,8 @@ class Subscriber:
         self.master = Master("http://127.0.0.1:9", "/tpc")
         self.master.call = self._call
 
-    def _call(self, method: str) -> object:
-        assert method == "getSystemState"
+    def _call(self, method: str, *_: object) -> object:
+        assert method in {"getSystemState", "hasParam"}
         if self.state is None:
             raise RunError("no master")
         return self.state
@@ -276,6 +281,7 @@ def test_recorder_stamps_with_the_clock_and_keeps_the_account(tmp_path):
         reports=1,
         messages={"/chat": 1, "/done": 2, "/rosout": 2},
         lost={"/a": 2},
+        is_reporting=True,
     )
     with AnyReader([tmp_path / "a.bag"]) as reader:
         times = [(connection.topic, time) for connection, time, _ in reader.messages()]
@@ -286,6 +292,24 @@ def test_recorder_stamps_with_the_clock_and_keeps_the_account(tmp_path):
         ("/rosout", 4_000_000_000),
         ("/rosout", 4_000_000_000),
     ]
+
+
+# Marks at 5, 6 and at the time of the clock, which one without a stamp gets; that of 6 s is taken
+# back. A message that is no mark is in the bag alone.
+def test_marks_that_were_taken_back_do_not_count(tmp_path):
+    topics = ("/ana/mark_action", "/ana/mark_undo")
+    did, undo = (Source(topic, "/ana", "std_msgs/Time", "0" * 32, "") for topic in topics)
+    bag = BagFile(tmp_path / "a.bag")
+    recorder = Recorder(bag, [did.topic, undo.topic], None, sim_time=True)
+    recorder.take(CLOCK, struct.pack("<II", 7, 0))
+    for source, seconds in ((did, 5), (did, 6), (undo, 6), (did, 0), (did, 5)):
+        recorder.take(source, struct.pack("<II", seconds, 0))
+    recorder.take(did, b"\0")
+    bag.close()
+    status = recorder.status(closed=True)
+    assert (status.marks, status.messages[did.topic]) == (2, 5)
+    assert Progress.of(status, 1.0).marks == 2
+    assert MissionRun.of(status, tmp_path, "done", 1.0).marks == 2
 
 
 def test_reports_that_never_left_their_process_are_counted_by_comparison(tmp_path):
@@ -332,6 +356,44 @@ def test_what_was_before_the_first_clock(tmp_path):
         ]
 
 
+# The recorder is there first. roslaunch says then that the graph runs on /clock, and starts nodes.
+def test_a_clock_that_is_set_after_the_recording_began(tmp_path):
+    bag = BagFile(tmp_path / "a.bag")
+    recorder = Recorder(bag, ["/chat"], None, sim_time=False)
+    recorder.hold()
+    recorder.see_sim_time(False)
+    recorder.settle()
+    recorder.take(CHAT, struct.pack("<I", 2) + b"hi")
+    assert bag.messages == {}
+    recorder.see_sim_time(True)
+    recorder.settle()
+    recorder.take(CLOCK, struct.pack("<II", 1000, 0))
+    recorder.take(CLOCK, struct.pack("<II", 1001, 0))
+    status = recorder.status()
+    assert (status.began_ns, status.now_ns) == (1000 * 10**9, 1001 * 10**9)
+    bag.close()
+    with AnyReader([tmp_path / "a.bag"]) as reader:
+        assert [time for _, time, _ in reader.messages()] == [1000 * 10**9]
+
+
+# It is the wall's time at which the message came, not that of the answer a second later.
+def test_real_time_is_settled_by_the_first_message(tmp_path, monkeypatch):
+    bag = BagFile(tmp_path / "a.bag")
+    recorder = Recorder(bag, ["/chat"], None, sim_time=False)
+    recorder.hold()
+    recorder.see_sim_time(False)
+    recorder.settle()
+    monkeypatch.setattr(time, "time_ns", lambda: 5 * 10**9)
+    recorder.take(CHAT, struct.pack("<I", 2) + b"hi")
+    monkeypatch.setattr(time, "time_ns", lambda: 6 * 10**9)
+    recorder.see_sim_time(False)
+    recorder.settle()
+    recorder.take(CHAT, struct.pack("<I", 2) + b"yo")
+    bag.close()
+    with AnyReader([tmp_path / "a.bag"]) as reader:
+        assert [stamp for _, stamp, _ in reader.messages()] == [5 * 10**9, 6 * 10**9]
+
+
 def test_a_clock_that_never_came(tmp_path):
     bag = BagFile(tmp_path / "a.bag")
     recorder = Recorder(bag, ["/chat"], None, sim_time=True)
@@ -376,6 +438,22 @@ def test_status_survives_the_way_through_its_file(tmp_path):
     assert read_status(path) == status
 
 
+# --- the parameters
+
+
+@pytest.mark.parametrize("ending", ["exit 1", "exec sleep 600"])
+def test_half_of_the_values_is_not_left_in_the_folder(tmp_path, monkeypatch, ending):
+    monkeypatch.setattr(param_dump, "_HURRIED_S", 1.0)
+    program = tmp_path / "bin/rosparam"
+    program.parent.mkdir()
+    program.write_text(f"#!/bin/sh\necho half > $2\n{ending}\n")
+    program.chmod(0o755)
+    env = {"PATH": f"{program.parent}:/usr/bin:/bin"}
+    with pytest.raises(RunError, match="rosparam dump"):
+        dump_params(env, tmp_path / "params.yaml", lambda: True)
+    assert list(tmp_path.iterdir()) == [program.parent]
+
+
 # --- running
 
 
@@ -390,6 +468,17 @@ def test_launch_command_has_its_arguments_in_order(tmp_path):
 def test_missing_launch_file_is_said_before_anything_starts(tmp_path):
     with pytest.raises(RunError, match=r"no\.launch: no such launch file"):
         run_mission({}, RecordOptions(tmp_path / "out", tmp_path / "no.launch", {}, 5.0))
+    assert not (tmp_path / "out").exists()
+
+
+def test_missing_roslaunch_is_said_before_anything_starts(tmp_path):
+    launch = tmp_path / "x.launch"
+    launch.write_text("<launch/>")
+    options = RecordOptions(tmp_path / "out", launch)
+    with pytest.raises(
+        MissingToolError, match=r"roslaunch, rosmaster, rosparam of ROS 1 not found"
+    ):
+        run_mission({"PATH": str(tmp_path)}, options)
     assert not (tmp_path / "out").exists()
 
 
@@ -415,17 +504,77 @@ def test_settings_of_sinks_reach_the_nodes_and_nothing_else(tmp_path, monkeypatc
     assert sink_settings(given) == {"TPC_SINK": "file", "TPC_FOLDER": str(tmp_path / "x")}
 
 
-# What is left of it would be ranked as if it were of the next mission.
+# What is left of it would be ranked as if it were of the next mission. Marks of a bag that stays,
+# stay with it; those of the second mission do not replace those of the first.
 def test_an_earlier_mission_is_cleared_and_its_marks_are_kept(tmp_path):
-    (tmp_path / "tpc").mkdir()
-    names = ["mission.bag", "run.json", "events.parquet", "marks.json", "tpc/uav-1-1.tpc"]
-    for name in [*names, "mission.bag.marks.csv", "notes.md"]:
-        (tmp_path / name).write_text("x")
-    clear_earlier(tmp_path)
-    assert sorted(path.name for path in tmp_path.iterdir()) == [
-        "mission.bag.marks.csv.old",
-        "notes.md",
-    ]
+    folder = tmp_path / "today"
+    (folder / "tpc").mkdir(parents=True)
+    text = "time_ns,type,observer,note\n1,I\n"
+    marks = ["mission.bag", "today", "tpc/uav-1-1.tpc"]
+    stay = ["notes.md", "grades.csv", "other.bag", "other.bag.marks.csv"]
+    names = ["mission.bag", "run.json", "events.parquet", "marks.json", "tpc/uav-1-1.tpc", *stay]
+    for turn in range(2):
+        (folder / "tpc").mkdir(exist_ok=True)
+        for name in names:
+            (folder / name).write_text(f"{turn}")
+        for path in ["marks.csv", "ana.csv", *(f"{name}.marks.csv" for name in marks[::2])]:
+            (folder / path).write_text(f"{text}{turn}\n")
+        (tmp_path / "today.marks.csv").write_text(f"{text}{turn}\n")
+        kept = clear_earlier(folder)
+        ending = ".old.2" if turn else ".old"
+        inside = ["ana.csv", "marks.csv", "mission.bag.marks.csv", "uav-1-1.tpc.marks.csv"]
+        assert {str(path.relative_to(tmp_path)) for path in kept} == {
+            f"today.marks.csv{ending}",
+            *(f"today/{name}{ending}" for name in inside),
+        }
+        assert {path.read_text() for path in kept} == {f"{text}{turn}\n"}
+    left = {path.name for path in folder.iterdir() if ".old" not in path.name}
+    assert left == set(stay)
+    assert len(list(folder.glob("*.old*"))) == 8
+    assert clear_earlier(tmp_path / "new") == []
+
+
+class _NoRecorder:
+    """Stands for a recorder that reached the master, and then was interrupted."""
+
+    def __init__(self, *_: object, **__: object) -> None:
+        pass
+
+    def step(self) -> None:
+        raise RunError("interrupted")
+
+    leave = step
+
+
+# The bag of the earlier recording is gone, its marks are not; the master was reached.
+def test_kept_marks_are_said(tmp_path, monkeypatch):
+    monkeypatch.setattr("pytpc.ros.ros1.record_mission.GraphRecorder", _NoRecorder)
+    monkeypatch.setattr(Master, "call", lambda *_: 1)
+    path = tmp_path / "marks.csv"
+    for ending in ("old", "old.2"):
+        path.write_text("time_ns,type,observer,note\n1,I\n")
+        result = CliRunner().invoke(main, ["record", "-o", str(tmp_path)])
+        assert f"marks of the earlier recording are kept: {path}.{ending}\n" in result.output
+    path.write_text("time_ns,type,observer,note\n1,I\n")
+    (tmp_path / "monday.bag").write_text("has marks of its own")
+    assert "are kept" not in CliRunner().invoke(main, ["record", "-o", str(tmp_path)]).output
+    assert path.exists()
+
+
+def test_marks_stay_if_nothing_is_recorded(tmp_path):
+    path = tmp_path / "marks.csv"
+    path.write_text("time_ns,type,observer,note\n1,I\n")
+    env = {"ROS_MASTER_URI": "http://[::1]:1"}
+    with pytest.raises(RunError):
+        record_graph(RecordOptions(tmp_path), threading.Event(), env)
+    assert path.exists()
+
+
+def test_a_converted_mission_is_not_recorded_over(tmp_path):
+    for name in ("events.parquet", "marks.json"):
+        (tmp_path / name).write_text("the only one")
+    with pytest.raises(RunError, match="another folder"):
+        record_graph(RecordOptions(tmp_path), threading.Event(), {})
 
 
 @pytest.mark.parametrize("name", ["mission.bag", "mission.bag.active"])
@@ -440,13 +589,54 @@ def test_a_recording_of_a_robot_is_not_replaced(tmp_path, name):
     assert (tmp_path / name).read_text() == "the only one"
 
 
+# As roslaunch 1.16 prints it.
+def test_the_tail_has_the_place_in_a_broken_yaml_file(tmp_path):
+    log_file = tmp_path / "x.log"
+    log_file.write_text(
+        "\x1b[31mRLException: error loading <rosparam> tag: \n"
+        "\tfile /ws/task.yaml contains invalid YAML:\n"
+        "mapping values are not allowed here\n"
+        '  in "<unicode string>", line 7, column 16:\n'
+        "      cooldown: 3.0: x\n"
+        "                   ^\n"
+        'XML is <rosparam file="$(find x)/task.yaml" command="load"/>\x1b[0m\n'
+        "\x1b[31mThe traceback for the exception was written to the log file\x1b[0m\n"
+    )
+    process = GraphProcess("x", None, log_file, 1.0)  # type: ignore[arg-type]
+    assert process.tail() == [
+        "RLException: error loading <rosparam> tag: file /ws/task.yaml contains invalid YAML:"
+        ' mapping values are not allowed here in "<unicode string>", line 7, column 16:'
+        " cooldown: 3.0: x"
+    ]
+
+
+# A detail that reads like an error, as that of a tab does, is told once, and pushes out nothing.
+def test_the_details_of_an_error_are_told_once(tmp_path):
+    log_file = tmp_path / "x.log"
+    log_file.write_text(
+        "ERROR: first\n"
+        "ERROR: second\n"
+        "RLException: /ws/task.yaml contains invalid YAML:\n"
+        "found character that cannot start any token\n"
+        "  error_limit: 3\n"
+        "XML is <rosparam/>\n"
+    )
+    process = GraphProcess("x", None, log_file, 1.0)  # type: ignore[arg-type]
+    assert process.tail() == [
+        "ERROR: first",
+        "ERROR: second",
+        "RLException: /ws/task.yaml contains invalid YAML: found character that cannot start any"
+        " token error_limit: 3",
+    ]
+
+
 def test_tail_of_a_process_prefers_what_tells_of_an_error(tmp_path):
     log_file = tmp_path / "x.log"
     lines = ["started", "\x1b[31mRLException: no such file\x1b[0m", "", "====", "done", "bye"]
     log_file.write_text("\n".join(lines))
     process = GraphProcess("x", None, log_file, 1.0)  # type: ignore[arg-type]
     assert process.tail() == ["RLException: no such file"]
-    log_file.write_text("one\ntwo\nthree\nfour\n")
+    log_file.write_text("one\ntwo\nthree\n\x1b]2;x.launch http://127.0.0.1:1\x07four\n")
     assert process.tail(2) == ["three", "four"]
     assert GraphProcess("x", None, tmp_path / "none", 1.0).tail() == []  # type: ignore[arg-type]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import threading
 from pathlib import Path
+from typing import ClassVar
 
 import pytest
 from click.testing import CliRunner
@@ -252,7 +253,7 @@ def test_what_nobody_thought_of_costs_no_mission(tmp_path, monkeypatch):
     def broken(*_args: object, **_options: object) -> None:
         raise AssertionError("odd")
 
-    monkeypatch.setattr(recording, "trace_launch", broken)
+    monkeypatch.setattr(recording, "trace_any_launch", broken)
     trace, reason = try_trace({}, tmp_path / "a.launch", {})
     assert trace is None
     assert "odd" in reason
@@ -276,12 +277,18 @@ def test_recording_goes_on_while_the_launch_file_is_read(tmp_path, monkeypatch):
     polled, stop = threading.Event(), threading.Event()
 
     class Subscriber:
+        broken: ClassVar[dict[str, int]] = {}
+        received = 0
+
         def __init__(self, *_: object) -> None:
             pass
 
         def poll(self, _seconds: float) -> list[object]:
             polled.set()
             return []
+
+        def connections(self) -> set[tuple[str, str]]:
+            return set()
 
         def close(self) -> None:
             pass
@@ -298,14 +305,14 @@ def test_recording_goes_on_while_the_launch_file_is_read(tmp_path, monkeypatch):
         stop.set()
         return None, "read meanwhile" if read_meanwhile else "recorded nothing meanwhile"
 
-    def dump(_env: object, path: Path) -> None:
+    def dump(_env: object, path: Path, *_: object) -> None:
         path.write_text("a: 1\n")
 
     monkeypatch.setattr(recorder, "RawSubscriber", Subscriber)
     monkeypatch.setattr(recorder, "Discovery", Nothing)
     monkeypatch.setattr(Master, "has_sim_time", lambda _: False)
     monkeypatch.setattr(record_mission, "try_trace", slow)
-    monkeypatch.setattr(record_mission, "dump_params", dump)
+    monkeypatch.setattr(record_mission, "try_dump", dump)
     env = {"ROS_MASTER_URI": "http://localhost:1"}
     launch = tmp_path / "a.launch"
     options = RecordOptions(tmp_path / "out", launch, timeout_s=8.0)

@@ -1,5 +1,6 @@
 """Link units of Python: packages, imports, keys, arithmetic, rules, the command."""
 
+import hashlib
 import json
 import math
 import uuid
@@ -79,6 +80,16 @@ def test_the_same_twice_and_the_key_by_hand(tmp_path: Path) -> None:
     assert first.key == str(uuid.uuid5(space, "\n".join(name)))
     name = ["guard", "watch", "src/guard/sub/sender.py", "Sender.send", "7", "12", "top"]
     assert second.key == str(uuid.uuid5(space, "\n".join(name)))
+
+
+def test_the_digests_of_the_sources_are_kept(tmp_path: Path) -> None:
+    folder = package(tmp_path / "guard")
+    run(str(folder), "-o", str(tmp_path / "a.json"))
+    # A comparison, the read of its parameter, and another comparison.
+    names = ("scripts/watch.py", "src/guard/limits.py", "src/guard/sub/sender.py")
+    files = [folder / name for name in names]
+    digests = ((str(file), hashlib.sha256(file.read_bytes()).hexdigest()) for file in files)
+    assert StaticInfo.load(tmp_path / "a.json").sources == tuple(digests)
 
 
 def test_faults_are_one_line_with_the_place(tmp_path: Path) -> None:
@@ -212,7 +223,7 @@ def test_faults_in_rules(text: str, said: str, tmp_path: Path) -> None:
 def test_the_built_in_rules_obey_the_schema() -> None:
     # Reading checks them; each table of the schema is in use.
     rules = load_rules()
-    assert rules.reads["rospy.get_param"][0].place == 0
+    assert rules.reads["rospy.get_param"].name.place == 0
     assert rules.comparisons["operator.gt"].relation == ">"
 
 

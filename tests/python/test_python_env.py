@@ -203,6 +203,7 @@ def test_record_has_python_nodes_report_unless_it_is_told_not_to(
     (workspace / ".tpc/install").mkdir()
     (workspace / ".tpc/install/setup.bash").write_text("export ROS_PACKAGE_PATH=/ws/share\n")
     launch = str(tmp_path / "x.launch")
+    Path(launch).write_text("<launch/>")
     done = CliRunner().invoke(
         main, ["record", str(workspace), launch, "-o", str(tmp_path / "out"), *words]
     )
@@ -212,3 +213,37 @@ def test_record_has_python_nodes_report_unless_it_is_told_not_to(
         expected = {**expected, "TPC_STATIC": f"{workspace}/.tpc/static.json"}
     names = ("PYTHONPATH", "TPC_PYTHON", "TPC_STATIC")
     assert {name: seen[name] for name in names if name in seen} == expected
+
+
+def test_the_devel_space_of_a_build_is_set_and_undone(workspace, monkeypatch):
+    static, devel = workspace / ".tpc/static.json", workspace / ".tpc/devel"
+    devel.mkdir()
+    (devel / ".catkin").write_text("/ws/src/robot")
+    (devel / ".built_by").write_text("pytpc build\n")
+    # Without Python there is something to set, too.
+    static.write_text(static_text("src/node.cpp"))
+    before = {"ROS_PACKAGE_PATH": "/ws/share", "PYTHONDONTWRITEBYTECODE": None}
+    # Nodes run in other folders.
+    monkeypatch.chdir(workspace)
+    status, out, said = invoke(".", "--json", **before)
+    assert (status, said) == (0, "")
+    values = json.loads(out)["set"]
+    assert values["ROS_PACKAGE_PATH"] == "/ws/src/robot:/ws/share"
+    assert values["TPC_DEVEL"] == str(devel)
+    status, out, said = invoke("--off", "--json", **values)
+    assert (status, said) == (0, "")
+    undone = json.loads(out)
+    assert undone["set"] == {"ROS_PACKAGE_PATH": "/ws/share"}
+    assert {"PYTHONDONTWRITEBYTECODE", "TPC_DEVEL"} <= {*undone["unset"]}
+
+
+@pytest.mark.parametrize(
+    ("env", "expected"),
+    [
+        ({"TPC_DEVEL": "/ws/.tpc/devel"}, ["/ws/.tpc/static.json"]),
+        ({"TPC_DEVEL": "/ws/.tpc/devel", "TPC_STATIC": "/other.json"}, ["/other.json"]),
+        ({}, []),
+    ],
+)
+def test_a_recording_of_a_running_robot_knows_the_build_of_its_shell(env, expected):
+    assert [str(file) for file in record._static_of_shell(env)] == expected

@@ -6,10 +6,10 @@ import sys
 import threading
 from types import SimpleNamespace
 
-from pytpc.python_runtime import ros_state
+from pytpc.python_runtime import ros1_state
 from pytpc.python_runtime.config import Config
 from pytpc.python_runtime.policies import Caps, Edges
-from pytpc.python_runtime.ros_sinks import RosoutSink
+from pytpc.python_runtime.ros1_sinks import RosoutSink
 from pytpc.python_runtime.sites import Reported
 
 
@@ -38,7 +38,7 @@ def test_a_publisher_may_wait_for_a_thread_that_compares(monkeypatch) -> None:
         Time=SimpleNamespace(now=lambda: 7.0),
         Publisher=lambda *_, **__: SimpleNamespace(publish=publish),
     )
-    monkeypatch.setattr(ros_state, "rospy", lambda: node)
+    monkeypatch.setattr(ros1_state, "rospy", lambda: node)
     take(one, True, 5.0, 3.0, True)
     assert lines[0] == "threshold_information:one,True,cmp:5,thresh:3,res:True"
     assert ended

@@ -337,6 +337,8 @@ def test_pytpc_run_takes_the_interpreter_of_the_script(package, tmp_path):
     assert command_of(program, ["x"], []) == [str(program), "x"]
     done = run(package, sys.executable, "-m", "pytpc", "run", program, "-x", cwd=ROOT)
     assert (done.returncode, done.stdout) == (0, "-x\n")
+    node.write_text('#!/usr/bin/python3 -u "\n')
+    assert interpreter_of(node) == ["/usr/bin/python3", "-u", '"']
     node.write_text("#!/usr/bin/python2.7\n")
     done = CliRunner().invoke(main, ["run", str(node)])
     assert done.exit_code == 1

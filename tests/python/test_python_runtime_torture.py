@@ -20,10 +20,10 @@ TESTS = [
     "test_class", "test_with", "test_scope", "test_super", "test_exceptions", "test_listcomps",
     "test_genexps", "test_setcomps", "test_dictcomps", "test_unpack", "test_raise",
     "test_userdict", "test_userlist", "test_textwrap", "test_shlex", "test_difflib", "test_copy",
-    "test_ipaddress", "test_calendar", "test_graphlib", "test_deque", "test_opcodes",
+    "test_ipaddress", "test_graphlib", "test_deque", "test_opcodes",
     "test_augassign", "test_binop", "test_contains", "test_decorators", "test_enumerate",
     "test_property", "test_weakset", "test_sys_settrace", "test_sys_setprofile", "test_bdb",
-    "test_trace", "test_cprofile",
+    "test_cprofile",
 ]  # fmt: skip
 
 

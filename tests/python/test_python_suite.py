@@ -12,38 +12,19 @@ from static_units import comparison, unit
 
 from pytpc.static.link_unit import Comparison, LinkUnit
 from suite.expectations import PYTHON_PACKAGE, Entry, Expectation, judge, load, nodes
-from suite.places import comparisons, values
+from suite.lists import wrong_with
+from suite.places import comparisons
 from suite.python_run import missing_modules, script
 
 TYPES = {"parameter", "flag", "derived"}
-MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 KEYS = {"about", "expect", "absent", "limits", "constants", "imprecise", "nan", "params", "timed"}
 ENTRY = Entry("nodes/a.py", 12, "x > limit", "~limit", "parameter", ">", 1, None, "", 8)
-
-
-def wrong_with(entry: Entry) -> str | None:
-    """What is wrong with an entry's place, text or relation."""
-    source = (PYTHON_PACKAGE / entry.file).read_text("utf-8")
-    assert entry.column is not None
-    place = (entry.line, entry.column)
-    here = [
-        operator for at, text, operator in comparisons(source) if (at, text) == (place, entry.text)
-    ]
-    if not here:
-        if (place, entry.text) not in values(source):
-            return "no expression of this text begins here"
-        # min and max compare inside; a value pattern and the end of a range do, too.
-        inside = {None, "flag", "<", "<=", ">", ">=", "==", "!="}
-        return None if entry.relation in inside else "not such a relation"
-    if entry.relation not in (None, here[0], MIRRORED.get(here[0], here[0])):
-        return f"the operator is {here[0]}"
-    return None
 
 
 @pytest.mark.parametrize("node", nodes(PYTHON_PACKAGE))
 def test_list_stands_on_its_places(node: str) -> None:
     for entry in load(node, PYTHON_PACKAGE).entries:
-        assert wrong_with(entry) is None, entry
+        assert wrong_with(entry, PYTHON_PACKAGE) is None, entry
 
 
 @pytest.mark.parametrize("node", nodes(PYTHON_PACKAGE))
@@ -93,11 +74,17 @@ def test_wrong_entries_are_seen() -> None:
     # Line 14 of ctl_direct_if.py is `        if msg.data > self.limit:`; it begins at column 12.
     (right,) = load("ctl_direct_if", PYTHON_PACKAGE).expect
     assert (right.line, right.column, right.relation) == (14, 12, ">")
-    assert wrong_with(right) is None
-    assert wrong_with(replace(right, column=11)) == "no expression of this text begins here"
-    assert wrong_with(replace(right, line=13)) == "no expression of this text begins here"
-    assert wrong_with(replace(right, text="msg.data")) is None
-    assert wrong_with(replace(right, relation=">=")) == "the operator is >"
+    assert wrong_with(right, PYTHON_PACKAGE) is None
+    assert (
+        wrong_with(replace(right, column=11), PYTHON_PACKAGE)
+        == "no expression of this text begins here"
+    )
+    assert (
+        wrong_with(replace(right, line=13), PYTHON_PACKAGE)
+        == "no expression of this text begins here"
+    )
+    assert wrong_with(replace(right, text="msg.data"), PYTHON_PACKAGE) is None
+    assert wrong_with(replace(right, relation=">="), PYTHON_PACKAGE) == "the operator is >"
 
 
 def test_text_over_several_lines() -> None:

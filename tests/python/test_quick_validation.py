@@ -31,6 +31,7 @@ def test_the_place_of_a_fault_among_10000_comparisons_is_named() -> None:
         check_unit(found, PATH, "/units/3")
     assert str(caught.value) == (
         "unit.json: /units/3/comparisons/9876/path/1/lineno: 'forty' is not of type 'integer'"
+        "; if another version of TPC wrote it, rebuild with `pytpc build`"
     )
 
 

@@ -230,20 +230,22 @@ def test_the_value_of_a_good_run_is_taken_whatever_the_log_says(flown, direction
     log = recording(rows("<", [0.1] * 5, 0.04))
     typed = marks(95, kind="II")
     clean = recording(rows("<", [0.1] * 5, flown))
-    found = remedy(log, static, "limit", typed, Question(reference=clean))
+    found = remedy(log, static, "limit", typed, Question(references=[clean]))
     assert (found.value, found.basis, found.direction) == (flown, "reference", direction)
     assert found.text == f"{direction} limit from 0.04 to {flown} {words}"
     assert [(one.source, one.value) for one in found.known] == [("reference", flown)]
     # Where it may not be taken, or was tried in vain, the log has the word.
-    assert remedy(log, static, "limit", typed, Question(reference=clean, sources=())).value == 0.101
-    again = remedy(log, static, "limit", typed, Question(reference=clean, flown=[flown]))
+    assert (
+        remedy(log, static, "limit", typed, Question(references=[clean], sources=())).value == 0.101
+    )
+    again = remedy(log, static, "limit", typed, Question(references=[clean], flown=[flown]))
     assert (again.direction, again.basis) == ("raise", "lasting")
 
 
 def test_a_good_run_with_the_same_value_says_nothing():
     log = recording(rows("<", [0.1] * 5, 0.04))
     static = static_info(comparison(0, "limit", "<"))
-    found = remedy(log, static, "limit", marks(95, kind="II"), Question(reference=log))
+    found = remedy(log, static, "limit", marks(95, kind="II"), Question(references=[log]))
     assert (found.value, found.basis) == (0.101, "lasting")
 
 
@@ -253,13 +255,13 @@ def test_a_good_run_answers_where_the_log_does_not():
     flag = static_info(comparison(0, "on", "flag", default=True))
     clean = recording(rows("flag", [1] * 5, 1))
     log = recording(rows("flag", [0] * 5, 0))
-    found = remedy(log, flag, "on", marks(95), Question(reference=clean))
+    found = remedy(log, flag, "on", marks(95), Question(references=[clean]))
     assert (found.value, found.direction, found.basis) == (True, "switch", "reference")
     assert found.text == "switch on from false to true (the value of the good run)"
     whole = static_info(comparison(0, "limit", ">=", default=3))
     clean = recording(rows(">=", [0] * 5, 8))
     log = recording(rows(">=", [0] * 5, 3))
-    found = remedy(log, whole, "limit", marks(95), Question(reference=clean))
+    found = remedy(log, whole, "limit", marks(95), Question(references=[clean]))
     assert (found.value, type(found.value)) == (8, int)
 
 
@@ -344,3 +346,18 @@ def test_whatever_the_log(cmps, relation, threshold, kind, flown):
         most = 2 * sum(before) >= len(before)
         after = [holds(cmp, float(found.value)) for cmp in cmps]
         assert after.count(most) < before.count(most)
+
+
+# Type I at 100 s: `cmp < 0.5` became True at 99.5 s, and was at 10 s, where nobody complained. The
+# default of 0.1 would stop both, so it comes after what lasts. The stay at 99.5 s was at 0.45 and
+# went back to 0.9 by itself: three times the way from 0.9 is below 0, a third of the value is 0.15.
+def test_a_default_that_stops_everything_comes_after_what_lasts():
+    cmps = [(10, 0.12), (20, 0.9), (98, 0.9), (99.5, 0.45), (99.8, 0.9)]
+    log = recording([(t, 0, cmp < 0.5, cmp, 0.5) for t, cmp in cmps])
+    static = static_info(comparison(0, "limit", "<", default=0.1))
+    found = remedy(log, static, "limit", marks(100))
+    assert (found.value, found.basis) == (0.15, "lasting")
+    # Without the one at 10 s it stops nothing but the error.
+    log = recording([(t, 0, cmp < 0.5, cmp, 0.5) for t, cmp in cmps[1:]])
+    found = remedy(log, static, "limit", marks(100))
+    assert (found.value, found.basis) == (0.1, "default")

@@ -11,20 +11,27 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from mission_samples import SummaryBuilder, comparison, events, key, ns, static_info
 from report_samples import NASTY, Page, mission, written
 
+from pytpc.api.comparing import RecordedRun, beside
 from pytpc.api.report import MissionReport, write_missions
 from pytpc.base.errors import TpcError
-from pytpc.base.wording import percent
+from pytpc.base.wording import exact, percent
+from pytpc.diagnosis.diagnose import diagnose_mission
 from pytpc.diagnosis.full_names import with_full_names
 from pytpc.diagnosis.question import Question
-from pytpc.diagnosis.ranking.blame import blame
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
-from pytpc.diagnosis.suggestion.advise import join_advice
+from pytpc.diagnosis.results.advice import BlamedAdvice, Remedy
+from pytpc.diagnosis.results.diagnosis import Diagnosis
+from pytpc.diagnosis.results.differences import Difference, RunDifferences, SetValue
+from pytpc.diagnosis.results.mission_answer import MissionAnswer
+from pytpc.diagnosis.results.suspects import Accused, Blame, Evaluation
 from pytpc.diagnosis.suggestion.whole_mission import answer_mission
+from pytpc.present.page.html import page_text as page_text_of
+from pytpc.present.page.reported_mission import ReportedMission
 from pytpc.present.page.series import (
     BINS,
     BOTH,
@@ -189,21 +196,18 @@ def test_what_it_says(page_text):
     text = " ".join("".join(Page(page_text).text).split())
     assert "Mark at 31.0 s type I: it did something that it should not have, by o<b>" in text
     assert "The changed parameter's position: not ranked." in text
-    # Marks 1 and 3 name faces first: at 36 s both scores count, and faces, last changed 6 s before,
-    # is first by type I: 6 * 2 = 12 against 1 * 15 = 15 of NASTY.
-    assert "First suspect at marks 1, 3 of 3, by the score of type I." in text
-    # faces >= 3 became true with 4 faces: above 4 it would not have, and there are whole faces. It
-    # grew from 1 until the program acted: three times the way is 10, and above it are 11.
-    assert "▲ Raise faces from 3 to 11" in text
+    assert text.count("At this mark alone, by the score of type I ") == 2
+    assert text.count("At this mark alone, by the score of type II ") == 1
+    assert text.count("At this mark alone, by the score of type I and type II ") == 1
+    # faces >= 3 became true with 4 faces: above 4 it would not have, and there are whole faces.
     assert "It became true 1.00 s before the mark, with 4 against 3." in text
     assert "Any value above 4 would do at least once." in text
-    assert "Why this valueabove 10: the value grew until the program acted" in text
-    assert "On this recording11 answers 1 of 1 mark of type I" in text
+    assert "1 faces 3; smallest change: raise to 5" in text
     assert "Smallest changeraise faces from 3 to 5 (above 4)" in text
+    assert "On this recording5 answers 2 of 2 marks; away from marks it turns" in text
     # The nearest evaluation in the window has coverage 0.5 of 0.6: true below 0.5. From 23 to 35 s
-    # there are 121 evaluations, both ends with them. They grow to it: what they had reached in the
-    # middle, at 29 s, is 29/60 = 0.48333.
-    assert "At mark 2 of 3: ▼ Lower coverage changed from 0.6 to 0.483" in text
+    # there are 121 evaluations, both ends with them.
+    assert "1 coverage changed 0.6; smallest change: lower to 0.499" in text
     assert "Smallest changelower coverage from 0.6 to 0.499 (below 0.5)" in text
     assert "In the 12 s before the mark it was false all 121 times" in text
     assert (
@@ -246,9 +250,9 @@ def test_the_way_is_folded_on_the_card(page_text):
     assert ways[0].count('<li class="here">') == 1
 
 
-def test_only_the_first_mark_is_unfolded(page_text):
+def test_the_marks_alone_are_folded(page_text):
     found = re.findall('<details class="mark" id="(m1-[0-9])"( open)?>', page_text)
-    assert found == [("m1-1", " open"), ("m1-2", ""), ("m1-3", "")]
+    assert found == [("m1-1", ""), ("m1-2", ""), ("m1-3", "")]
 
 
 def test_the_same_missions_make_the_same_page(tmp_path):
@@ -279,17 +283,18 @@ def test_missions_without_marks_or_reports(tmp_path):
         "empty", nothing, plain.static_info, rank_marks(nothing, silent.static_info)
     )
     text = "".join(Page(written(tmp_path, silent, empty)).text)
-    assert "This recording has no marks. Add some with `pytpc mark`." in text
+    assert "No marks, so no verdict." in text
+    assert "Add marks with pytpc mark, and write this page again." in text
     assert "Not enough evidence: no" in text
-    assert "No parameter has a score at any mark." in text
+    assert "Not enough evidence to suspect any parameter." in text
     assert "No missions." in "".join(Page(written(tmp_path)).text)
 
 
 def test_progress_counts_every_figure(tmp_path):
     seen = []
     written(tmp_path, mission(tmp_path), on_progress=lambda *step: seen.append(step))
-    # One timeline; marks of type I, II and none with 2, 3 and 3 suspects.
-    assert seen == [(n, 9) for n in range(1, 10)]
+    # One timeline, the first suspect; marks of type I, II and none with 2, 3 and 3 suspects.
+    assert seen == [(n, 10) for n in range(1, 11)]
 
 
 def test_a_page_that_cannot_be_written_leaves_the_old_one(tmp_path, monkeypatch):
@@ -338,7 +343,6 @@ def test_where_the_value_came_from_is_on_the_card(tmp_path):
     page = Page(written(tmp_path, replace(report, static_info=static, rankings=rankings)))
     assert page.tags["i"] == 0
     text = " ".join("".join(page.text).split())
-    assert "Value set in…/config/params<i>.yaml:7coverage: 0.6 # <i>" in text
     assert "Value set in/a/very/long/way/robot/config/params<i>.yaml:7coverage: 0.6" in text
     assert "loaded by /launch/robot.launch:3instead of /else/where.yaml:9" in text
 
@@ -353,7 +357,7 @@ def test_what_is_declared_is_on_the_card(tmp_path):
         Page(written(tmp_path, mission(tmp_path, question=Question(declared=[declared])))).text
     )
     assert f"double from 0 to 0.55, in steps of 0.05 {place}" in text
-    assert "Lower coverage changed from 0.6 to 0.45" in " ".join(text.split())
+    assert "coverage changed 0.6; smallest change: lower to 0.45" in " ".join(text.split())
 
 
 def test_the_package_brings_its_templates():
@@ -365,77 +369,187 @@ def test_the_package_brings_its_templates():
     }
 
 
-# Two comparisons are evaluated up to the marks at 5 and 6 s, one up to the three before: what those
-# say is not what the page begins with, though they are more.
-def test_marks_without_enough_evidence_do_not_make_the_answer(tmp_path):
-    static = static_info(comparison(0, "alone"), comparison(1, "near"))
-    rows = [(t / 10, 0, False, 1 if t < 5 else 0, 3) for t in range(70)]
-    rows += [(t / 10, 1, False, 1 + t / 100, 2) for t in range(45, 70)]
-    kinds = {1: "II", 2: "II", 3: "II", 5: "II", 6: "II"}
-    marks = tuple(Mark(ns(second), kind) for second, kind in kinds.items())
-    recording = Recording("m", events(rows), marks, 0, ns(7))
-    report = MissionReport("m", recording, static, rank_marks(recording, static))
-    text = " ".join("".join(Page(written(tmp_path, report)).text).split())
-    first, _, rest = text.partition("The whole mission")
-    assert first.index("Lower near from") < first.index("Lower alone from")
-    assert "Raise" not in first
-    assert "First suspect at marks 4-5 of 5" in first
-    assert first.count("(not enough evidence)") == 1
-    assert "Not enough evidence: only alone had been compared up to the mark." in rest
-    # Where there are no others it is said before the answer.
-    early = replace(recording, marks=marks[:3])
-    report = replace(report, recording=early, rankings=rank_marks(early, static))
-    text = " ".join("".join(Page(written(tmp_path, report)).text).split())
-    why = (
-        "Not enough evidence for this answer: only alone had been compared up to the mark. ▼ Lower"
-    )
-    assert why in text
-
-
-# The marks at 26 and 31 s say the same, so that both cards and the answer have one value: what
-# coverage had reached in the middle of the first one's window, 20/60. At the second alone it is
-# 25/60.
-def test_it_leads_with_the_value_of_pytpc_suggest(tmp_path):
-    report = mission(tmp_path)
-    marks = (Mark(ns(26), "II"), Mark(ns(31), "II"))
-    recording = replace(report.recording, marks=marks)
-    rankings = rank_marks(recording, report.static_info)
-    (group,) = join_advice(recording, report.static_info, rankings)
-    tried = group.suspects[0].remedy
-    report = replace(report, recording=recording, rankings=rankings)
-    text = " ".join("".join(Page(written(tmp_path, report)).text).split())
-    claim = f"▼ Lower coverage changed from 0.6 to {tried.value}"
-    assert (tried.parameter, tried.value) == ("coverage", 0.333)
-    assert text.count(claim) == 3
-    (alone,) = join_advice(recording, report.static_info, rankings[1:])
-    assert alone.suspects[0].remedy.value == 0.416
-
-
-# What all marks say together comes before what any of them says; where the marks are outside of the
-# log (it ends at 6.9 s) it says why there is nothing.
+# What all marks say together comes before what any of them says, in the words of the diagnosis;
+# where the marks are outside of the log (it ends at 6.9 s) it says why there is nothing.
 def test_all_marks_together_come_first(tmp_path):
     static = static_info(comparison(0, "<b>gate"), comparison(1, "safe"))
     rows = [(t / 10, 0, t >= 50, t / 10, 5) for t in range(70)]
     rows += [(t / 10, 1, False, 1 + t / 100, 9) for t in range(70)]
     recording = Recording("m", events(rows), (Mark(ns(6), "I"), Mark(ns(6.5), "I")), 0, ns(60))
     report = MissionReport("m", recording, static, rank_marks(recording, static))
-    text = " ".join("".join(Page(written(tmp_path, report)).text).split())
-    found = blame(recording, static)
-    said = f"All 2 marks together: 2 of type I. {found.text[0].upper()}{found.text[1:]}. To try: "
+    page = written(tmp_path, report)
+    text = " ".join("".join(Page(page).text).split())
+    found = diagnose_mission(recording, static)
+    headline = f"{found.headline[0].upper()}{found.headline[1:]}."
+    said = f"All 2 marks together: 2 of type I {headline}"
     assert said in text
-    others = ", ".join(f"{s.parameter} ({percent(s.probability)})" for s in found.suspects[1:])
-    assert f"Next: {others}." in text
-    assert text.index(said) < text.index("First suspect at all 2 marks")
+    assert text.index(said) < text.index("Each mark alone")
+    # None of the parameters is likelier than the first one: nothing is to be tried, and no value is
+    # in large letters.
+    assert found.is_none_likeliest
+    assert claims(page) == [headline]
+    first = found.shown[0].accused
+    assert f"The likeliest of the compared parameters ({percent(first.probability)}): <b>" in text
+    # One list of all suspects, with what is folded: none is set above the others.
+    assert re.search(rf"Suspects {first.parameter} +{percent(first.probability)}", text)
+    assert "Other suspects" not in text
     late = replace(recording, marks=(Mark(ns(50), "I"),))
     report = MissionReport("m", late, static, rank_marks(late, static))
     text = " ".join("".join(Page(written(tmp_path, report)).text).split())
     assert (
-        "The one mark: 1 of type I. Not enough evidence to suspect any parameter. "
+        "The one mark: 1 of type I Not enough evidence to suspect any parameter. "
         "Mark 1: the last report up to the mark is 43.1 s before it." in text
     )
-    assert "To try: " not in text
     report = replace(report, recording=replace(late, marks=()), rankings=[])
     assert "The one mark" not in written(tmp_path, report)
+
+
+# The good run had another limit of coverage, so that is to blame. Its evidence is that of the mark
+# where it is most suspicious, with the value of the good run in the legend.
+def test_the_evidence_is_that_of_the_first_suspect(tmp_path):
+    report = accused_coverage(tmp_path)
+    found = diagnose_mission(report.recording, report.static_info, report.question)
+    assert (found.accused, found.advice[0].remedy.value) == ("/node/coverage", 0.25)
+    page = written(tmp_path, report)
+    assert claims(page)[1].startswith("▼ Lower /node/coverage from 0.6 to 0.25 (")
+    text = " ".join("".join(Page(page).text).split())
+    assert re.search(r"The evidence for /node/coverage changed, at mark \d of 2 ", text)
+    assert "to try: 0.25 " in text
+    lead = report.answered().answer.lead
+    assert lead is not None
+    places = [ranking.position_of("/node/coverage") for ranking in report.rankings]
+    assert lead.number == places.index(min(places)) + 1
+    assert (lead.suggested, lead.accused.type) == (0.25, "II")
+
+
+def claims(page):
+    """What the page says in large letters."""
+    found = re.findall(r'<p class="claim[^"]*">(.*?)</p>', page, re.DOTALL)
+    return [" ".join(unescape(re.sub("<[^>]*>", "", one)).split()) for one in found]
+
+
+NAMES = ("~limit", "/a/b", "<i>gate", "speed_deg", "flag", "~rate of")
+
+
+@st.composite
+def diagnoses(draw):
+    """A diagnosis of any probabilities, with or without values to try and silent differences."""
+    names = draw(st.lists(st.sampled_from(NAMES), max_size=5, unique=True))
+    weights = [draw(st.floats(0.0, 1.0)) for _ in range(len(names) + 1)]
+    total = sum(weights) or 1.0
+    shares = sorted((weight / total for weight in weights[1:]), reverse=True)
+    last = Evaluation(ns(1), True, 1.0, 2.0, True, "/node")
+    suspects = tuple(
+        Accused(place, False, name, share, "I", key(place), comparison(place, name), last)
+        for place, (name, share) in enumerate(zip(names, shares, strict=True), start=1)
+    )
+    advice = []
+    for one in suspects:
+        value = draw(st.none() | st.sampled_from([0.5, 3, True]))
+        reason = "nothing would do" if value is None else None
+        text = f"lower {one.parameter} from 2 to {exact(value)} (why)" if reason is None else reason
+        way = "lower" if reason is None else None
+        told = Remedy(one.parameter, 2, way, value, None, text, reason, "I", one.key, None)
+        advice.append(BlamedAdvice(one, told, None))
+    silent = Difference("/n/silent", SetValue(1), SetValue(2), "used", ("a:1",), (), ())
+    differing = draw(
+        st.sampled_from([None, (), (silent,)]).map(
+            lambda found: None if found is None else RunDifferences(("g",), "b", found, True)
+        )
+    )
+    blamed = Blame(suspects, weights[0] / total, len(names), (Mark(ns(1), "I"),), ())
+    return Diagnosis(blamed, tuple(advice), differing)
+
+
+# No parameter is named in large letters unless the diagnosis' own headline or action names it, and
+# nothing is to be tried in large letters where it is not sure, or "none of them" is likelier.
+@given(diagnoses())
+@settings(max_examples=40, deadline=None)
+def test_large_letters_say_what_the_diagnosis_says(found):
+    empty = Recording("m", events([]), (Mark(ns(1), "I"),), 0, ns(2))
+    question = Question(differences=found.differences)
+    answer = MissionAnswer(question, (), found, None, ())
+    page = page_text_of([ReportedMission("m", empty, static_info(), answer)], "t", lambda: None)
+    said = claims(page)
+    own = [found.headline, *([found.action] if found.action and found.accused else [])]
+    assert len(said) == len(own)
+    for shown, meant in zip(said, own, strict=True):
+        plain = shown.removeprefix("▼ ").removesuffix(" changed").removesuffix(".").casefold()
+        assert plain == " ".join(meant.split()).casefold()
+    if found.is_none_likeliest:
+        assert len(said) == 1
+    rest = page[: page.index('<h3 id="terms">')]
+    others = found.next_suspects if found.accused else ()
+    assert rest.count("Other suspects</h3>") == bool(others)
+    assert rest.count(">Suspects</h3>") == (not found.accused and bool(found.shown))
+
+
+def beside_good_run(report, number=0, thresh=5):
+    """The mission, asked about with a good run in which one comparison had another threshold."""
+    table = report.recording.events
+    own = table.key == table.keys.index(key(number))
+    seen = replace(table, thresh=np.where(own, thresh, table.thresh))
+    run = RecordedRun(replace(report.recording, name="monday", events=seen, marks=()))
+    static = report.static_info
+    question = beside(report.question, [run], RecordedRun(report.recording), static, static)
+    return replace(report, question=question)
+
+
+# Only faces differs: 5 in the good run. Of its 400 evaluations the 100 from 30 s on, of 4 faces,
+# would have been false.
+def test_what_differs_is_on_the_first_screen(tmp_path):
+    report = mission(tmp_path, treatment="", changed_parameter=None)
+    alone = written(tmp_path, report)
+    assert "Not compared with a good run." in "".join(Page(alone).text)
+    assert '<span class="tag">' not in alone
+    page = written(tmp_path, beside_good_run(report))
+    text = " ".join("".join(Page(page).text).split())
+    assert "1 parameter differs from the good run monday" in text
+    assert text.index("differs from the good run") < text.index("The whole mission")
+    said = "compared at src/node.cpp:5: 100 of 400 decisions would have come out otherwise"
+    assert f"faces 5 3 not known {said}" in text
+    # A user with a good run knows that it was changed.
+    tagged = re.findall(r'<span class="parameter culprit">([^<]*)</span>', page)
+    assert set(tagged) == {"faces"}
+
+
+def test_without_marks_it_says_what_differs(tmp_path):
+    report = beside_good_run(mission(tmp_path, treatment="", changed_parameter=None))
+    calm = replace(report, recording=replace(report.recording, marks=()), rankings=[])
+    text = " ".join("".join(Page(written(tmp_path, calm)).text).split())
+    assert text.index("No marks, so no verdict.") < text.index("1 parameter differs from the good")
+
+
+def test_the_command_that_changes_the_value(tmp_path):
+    report = accused_coverage(tmp_path)
+    text = " ".join("".join(Page(written(tmp_path, report)).text).split())
+    assert "Where it is set /ws/config/p.yaml:7coverage: 0.6" in text.replace("set/ws", "set /ws")
+    assert "pytpc apply '/out/a day' /node/coverage 0.25 Copy" in text
+    # Nobody set it: the value goes into the launch file.
+    (origin,) = report.origins.values()
+    unset = replace(report, origins={"/node/other": replace(origin, name="/node/other")})
+    text = " ".join("".join(Page(written(tmp_path, unset)).text).split())
+    assert "pytpc apply '/out/a day' /node/coverage 0.25 --add Copy" in text
+    # A line end in a path must not get into a terminal; of a bare recording there is no path.
+    for source in (Path("/out/a\nb"), Path("/out/\u202eb"), None):
+        assert "pytpc apply" not in written(tmp_path, replace(report, source=source))
+    # It was given on the command line of roslaunch: no file can be changed.
+    told = replace(report, origins={origin.name: replace(origin, kind="argument", path=None)})
+    assert "pytpc apply" not in written(tmp_path, told)
+
+
+def accused_coverage(tmp_path):
+    """The mission with marks at which coverage is first, beside a good run with 0.25 for it."""
+    report = mission(tmp_path, treatment="", changed_parameter=None)
+    comparisons = report.static_info.comparisons
+    found = replace(comparisons[key(1)], source="/node/coverage")
+    static = static_info(comparisons[key(0)], found, source_root=str(tmp_path))
+    recording = replace(report.recording, marks=(Mark(ns(26), "II"), Mark(ns(31), "II")))
+    name = "/node/coverage"
+    origin = Origin(name, "yaml", 0.6, Path("/ws/config/p.yaml"), 7, "coverage: 0.6")
+    asked = replace(report, recording=recording, static_info=static, source=Path("/out/a day"))
+    asked = replace(asked, rankings=rank_marks(recording, static), origins={name: origin})
+    return beside_good_run(asked, 1, 0.25)
 
 
 # 30 summaries of 10 evaluations each, and no report.
@@ -473,17 +587,21 @@ def test_objects_of_a_class_count_as_one_comparison_among_the_facts(tmp_path):
     assert re.search("Comparisons seen *1 of 2 found in the source", text)
 
 
-# By both scores the first is faces, by type I, the second the one by type II.
-def test_scores_of_both_types_say_which(tmp_path):
+def test_doubted_types_are_a_fact(tmp_path):
     report = mission(tmp_path)
-    page = written(tmp_path, report)
-    tables = page.split('<table class="ranking">')[1:]
-    own = [set(re.findall('</span>|<span class="muted">(I+)</span></td>', one)) for one in tables]
-    assert [{kind for kind in kinds if kind} for kinds in own] == [set(), set(), {"I", "II"}]
-    assert "Types of the marks" not in page
+    assert "Types of the marks" not in written(tmp_path, report)
     assert "doubted: suspects of the other" in written(
         tmp_path, replace(report, question=Question(types="doubt"))
     )
+
+
+# Low scores and high ranks are suspicious: both are explained on the card, in no table.
+def test_score_and_rank_are_on_the_card(page_text):
+    heads = re.findall('<th[^>]*scope="col">([^<]*)</th>', page_text)
+    assert set(heads) == {"#", "Parameter", "Value", "Smallest change", "Compared at"}
+    text = " ".join("".join(Page(page_text).text).split())
+    assert re.search(r"At this markscore [0-9.e-]+ of type I, rank 1\.00, distance 1", text)
+    assert 'aria-describedby="term-score"' in page_text
 
 
 # With three missions the answer of the first, which has its curves, is gone when the third comes.

@@ -5,11 +5,15 @@ from __future__ import annotations
 import base64
 import json
 import shutil
+import subprocess
 import time
 from dataclasses import replace
+from pathlib import Path
 
+import matplotlib.image
+import numpy as np
 import pytest
-from mission_samples import comparison, events, ns, static_info
+from mission_samples import comparison, events, key, ns, static_info
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.action_chains import ActionChains
@@ -17,7 +21,9 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
 
+from pytpc.api.comparing import RecordedRun, beside
 from pytpc.api.report import MissionReport, write_missions
+from pytpc.diagnosis.differences import changes_of
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
@@ -155,27 +161,126 @@ def visible(browser, selector):
     return [one.text for one in found if one.is_displayed()]
 
 
-ANSWER = ".answer .figure"
+ANSWER = ".lead .figure"
 TIMELINE = "[data-timeline]"
 ROWS = "#m1-1 table.ranking tbody tr"
 
 
-# The nearest evaluation to 0.6 is 0.5, so that any limit below does.
+def accused(**changes):
+    """More marks, beside a good run in which coverage had 0.25, so that coverage is to blame."""
+    report = mission(**changes)
+    told = report.recording.marks[0]
+    marks = tuple(replace(told, time_ns=ns(second)) for second in (16, 20, 24, 28, 31))
+    recording = replace(report.recording, marks=marks)
+    rankings = rank_marks(recording, report.static_info)
+    report = replace(report, recording=recording, rankings=rankings)
+    table = report.recording.events
+    own = table.key == table.keys.index(key(1))
+    seen = replace(table, thresh=np.where(own, 0.25, table.thresh))
+    run = RecordedRun(replace(report.recording, name="monday", events=seen, marks=()))
+    static = report.static_info
+    question = beside(report.question, [run], RecordedRun(report.recording), static, static)
+    assert question.differences is not None
+    # As if the values of all parameters were known of both.
+    return replace(report, question=replace(question, changes=changes_of(question.differences)))
+
+
+def phone(browser):
+    size = {"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": True}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+
+
+@pytest.fixture
+def on_a_phone(browser):
+    phone(browser)
+    yield
+    browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+def unfold(browser, ident):
+    browser.execute_script("document.getElementById(arguments[0]).open = true", ident)
+
+
 def test_the_first_screen_has_the_answer(opened):
-    browser = opened(mission())
-    claim = element(browser, ".answer .claim")
-    assert " ".join(claim.text.split()) == "▼ Lower coverage from 0.6 to 0.499"
+    browser = opened(accused())
+    verdict, action = browser.find_elements(By.CSS_SELECTOR, ".answer .claim")
+    assert verdict.text.startswith("Blame coverage: ")
+    assert " ".join(action.text.split()).startswith("▼ Lower coverage from 0.6 to 0.25 (")
     window = browser.execute_script("return innerHeight")
-    assert claim.location["y"] < window / 2
+    assert action.location["y"] < window / 2
+    assert element(browser, ".differences table").location["y"] < window
     drawn(browser, ANSWER)
-    assert element(browser, ANSWER).location["y"] < window
     # The figure that moves stands in the place of the other.
     assert not element(browser, f"{ANSWER} .still").is_displayed()
     assert element(browser, f"{ANSWER} .moving-figure").size["height"] > 200
+    assert "to try: 0.25" in element(browser, f"{ANSWER} .legend").text
+
+
+def test_a_phone_shows_the_suspect_and_the_value(opened, on_a_phone):
+    browser = opened(accused())
+    for claim in browser.find_elements(By.CSS_SELECTOR, ".answer .claim"):
+        assert claim.location["y"] + claim.size["height"] < 844
+    drawn(browser, ANSWER)
+    drawn(browser, TIMELINE)
+    assert browser.execute_script("return document.documentElement.scrollWidth") <= 390
+    # The table of differences is a list there.
+    assert not element(browser, ".differences thead").is_displayed()
+
+
+def test_several_missions_are_tabs(opened):
+    browser = opened(*(mission(name=name) for name in ("one", "two", "three")))
+    panels = "section.mission"
+    heads = lambda: [text.splitlines()[0] for text in visible(browser, panels)]  # noqa: E731
+    assert element(browser, "#overview").is_displayed()
+    assert heads() == ["one"]
+    tab = element(browser, "#m1-tab")
+    assert tab.get_attribute("aria-selected") == "true"
+    tab.send_keys(Keys.ARROW_RIGHT)
+    assert heads() == ["two"]
+    browser.switch_to.active_element.send_keys(Keys.END)
+    assert heads() == ["three"]
+    browser.switch_to.active_element.send_keys(Keys.ARROW_RIGHT)
+    assert heads() == ["one"]
+    element(browser, ".overview a[href='#m2']").click()
+    wait(browser, "return !document.getElementById('m2-panel').classList.contains('away')")
+    assert heads() == ["two"]
+    # A link to a card shows its mission.
+    browser.execute_script("location.hash = '#m3-2-1'")
+    wait(browser, "return document.getElementById('m3-2').open")
+    assert heads() == ["three"]
+    assert element(browser, "#m3-2-1 .why").is_displayed()
+
+
+def test_without_a_script_all_missions_can_be_read(opened):
+    browser = opened(mission(name="one"), mission(name="two"), script=False)
+    found = visible(browser, "section.mission")
+    assert [text.splitlines()[0] for text in found] == ["one", "two"]
+
+
+def test_a_term_is_explained_by_keyboard_pointer_and_tap(opened):
+    browser = opened(mission())
+    term = element(browser, ".judged .term")
+    said = "The robot should be doing something, and does not."
+    assert term.text == "type II"
+    described = term.get_attribute("aria-describedby")
+    assert element(browser, f"#{described}").text == said
+    assert visible(browser, ".tip") == []
+    browser.execute_script("arguments[0].focus()", term)
+    assert visible(browser, ".tip") == [said]
+    term.send_keys(Keys.ESCAPE)
+    assert visible(browser, ".tip") == []
+    ActionChains(browser).move_to_element(term).perform()
+    assert visible(browser, ".tip") == [said]
+    ActionChains(browser).move_to_element(element(browser, "h1")).perform()
+    assert visible(browser, ".tip") == []
+    term.click()
+    assert visible(browser, ".tip") == [said]
+    assert browser.execute_script("return location.hash") == ""
 
 
 def test_search_shows_what_has_all_the_words(opened):
     browser = opened(mission())
+    unfold(browser, "m1-1")
     box = element(browser, "input[type=search]")
     # Of 12 rows 8 are listed at first, a search looks in all.
     assert len(visible(browser, ROWS)) == 8
@@ -192,6 +297,7 @@ def test_search_shows_what_has_all_the_words(opened):
 
 def test_a_column_sorts_both_ways_by_keyboard(opened):
     browser = opened(mission())
+    unfold(browser, "m1-1")
     element(browser, "#m1-1 button.more").click()
     head = element(browser, "#m1-1 th[data-sort=parameter]")
     head.find_element(By.TAG_NAME, "button").send_keys(Keys.ENTER)
@@ -203,9 +309,9 @@ def test_a_column_sorts_both_ways_by_keyboard(opened):
     assert [row.split()[1] for row in visible(browser, ROWS)] == names[::-1]
     assert head.get_attribute("aria-sort") == "descending"
     # Numbers are sorted as numbers.
-    element(browser, "#m1-1 th[data-sort=score] button").click()
-    scores = [float(row.split()[-2]) for row in visible(browser, ROWS)]
-    assert scores == sorted(scores)
+    element(browser, "#m1-1 th[data-sort=current] button").click()
+    values = [float(row.split()[2]) for row in visible(browser, ROWS)]
+    assert values == sorted(values)
 
 
 # The answer's figure begins 20 s before the mark at 30 s and ends 6 s after it, with a hundredth of
@@ -255,7 +361,7 @@ def test_drag_and_wheel(opened):
 
 
 def test_the_pointer_reads_values(opened):
-    browser = opened(mission())
+    browser = opened(accused())
     figure = drawn(browser, ANSWER)
     canvas = element(browser, f"{ANSWER} .moving-figure")
     time.sleep(0.5)
@@ -302,7 +408,7 @@ def test_paper_gets_all_that_is_folded_and_the_figures_that_stand_still(opened):
     browser.execute_script(
         "addEventListener('beforeprint', () => { window.atPrint = ["
         "document.querySelectorAll('details:not([open])').length,"
-        "getComputedStyle(document.querySelector('.answer .still')).display] })"
+        "getComputedStyle(document.querySelector('.lead .still')).display] })"
     )
     pdf = base64.b64decode(browser.execute_cdp_cmd("Page.printToPDF", {})["data"])
     assert pdf.startswith(b"%PDF-")
@@ -321,9 +427,10 @@ def test_a_link_unfolds_what_it_leads_to(opened):
 
 def test_without_a_script_everything_can_be_read(opened):
     browser = opened(mission(), script=False)
-    assert "Lower coverage" in element(browser, ".answer .claim").text.replace("\n", " ")
+    assert "none of the parameters" in element(browser, ".answer .claim").text
     assert element(browser, f"{ANSWER} .still svg").is_displayed()
     assert element(browser, f"{TIMELINE} .still svg").is_displayed()
+    element(browser, "#m1-1 > summary").click()
     assert len(visible(browser, ROWS)) == 12
     assert not element(browser, "#theme").is_displayed()
 
@@ -337,11 +444,11 @@ def elements(browser):
 
 
 def test_hostile_names_stay_text(opened):
-    browser = opened(mission(("aaa", "bbb", "ccc")))
+    browser = opened(accused(names=("aaa", "bbb", "ccc")))
     harmless = elements(browser)
     for start in range(0, len(HOSTILE), 3):
         names = tuple(HOSTILE[(start + n) % len(HOSTILE)] for n in range(3))
-        opened(mission(names, name=names[0], treatment=names[1], changed_parameter=names[1]))
+        opened(accused(names=names, name=names[0], treatment=names[1], changed_parameter=names[1]))
         for figure in (ANSWER, TIMELINE):
             drawn(browser, figure)
         found = elements(browser)
@@ -369,8 +476,10 @@ def test_many_points_are_thinned_and_extremes_kept(opened):
         figure.send_keys("-")
     wait(
         browser,
-        "const y = Object.values(Bokeh.index)[0].model.children[0].renderers[0].data_source.data.y;"
+        "const shown = Object.values(Bokeh.index).find((view) => arguments[0].contains(view.el));"
+        "const y = shown.model.children[0].renderers[0].data_source.data.y;"
         "return y.length > 100 && y.length < 5000 && Math.max(...y.filter(Number.isFinite)) == 3.5",
+        figure,
     )
 
 
@@ -380,9 +489,23 @@ def test_long_names_are_folded(opened, browser, width):
     size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
     try:
-        opened(mission(names, name=names[0], treatment=names[1], changed_parameter=names[1]))
+        opened(accused(names=names, name=names[0], treatment=names[1], changed_parameter=names[1]))
         for figure in (ANSWER, TIMELINE):
             drawn(browser, figure)
         assert browser.execute_script("return document.documentElement.scrollWidth") <= width
     finally:
         browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+# The README's picture: the whole answer, from the page of the demo.
+def test_the_picture_of_an_answer(tmp_path):
+    page, picture = tmp_path / "report.html", tmp_path / "answer.png"
+    tool = Path(__file__).parents[2] / "tools" / "draw-answer"
+    write_missions(page, [mission(name="none"), accused(name="it")])
+    done = subprocess.run([tool, page, "-o", picture], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    height, width, *_ = matplotlib.image.imread(picture).shape
+    assert width > 900
+    assert height > 600
+    done = subprocess.run([tool, page, "none?"], capture_output=True, text=True, check=False)
+    assert (done.returncode, "no none?" in done.stderr) == (1, True)

@@ -15,10 +15,11 @@ from report_samples import Page, mission, written
 
 from pytpc.api.report import MissionReport
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
-from pytpc.present.page.series import FALSE, TRUE
+from pytpc.present.page.series import FALSE, TRUE, results_of
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summary
+from pytpc.static.link_unit import Transform
 
 NAN = math.nan
 
@@ -50,10 +51,30 @@ def test_an_outlier_does_not_flatten_the_plot(tmp_path):
     recording = Recording("far", events(rows), (Mark(ns(10), "I"),), 0, ns(10))
     static = static_info(comparison(0, "x"))
     report = MissionReport("far", recording, static, rank_marks(recording, static))
-    labels = re.findall("<text[^>]*>([^<]*)</text>", written(tmp_path, report))
-    assert "some values are beyond this plot" in labels
+    text = written(tmp_path, report)
+    labels = re.findall("<text[^>]*>([^<]*)</text>", text)
+    assert "compared values beyond this plot, up to 1.7e+308<" in text
+    card = next(iter(numbers_of(text)["cards"].values()))
+    assert card["edges"] == [[], [pytest.approx(9.9)]]
     assert {"1.2", "1.8", "2.4", "3.0"} <= set(labels)
     assert not any("e+" in label for label in labels)
+
+
+# The first compared value is a time since the epoch. Of nine it is 11 %, more than the ends that
+# are not looked at among many values; the others, 0.05 to 17.5, and the threshold of 3 are shown.
+# The axis ends 0.08 of their range above them, and 0.16 for the mark's name: 17.5 + 0.24 * 17.45.
+# The smallest change to draw is just below 0.05.
+def test_one_of_a_few_values_does_not_flatten_the_plot(tmp_path):
+    cmps = [1_795_763_972.0, 0.05, 10.75, 0.05, 3.05, 0.05, 17.5, 0.05, 2.0]
+    rows = [(t, 0, cmp > 3, cmp, 3) for t, cmp in enumerate(cmps)]
+    recording = Recording("epoch", events(rows), (Mark(ns(9), "I"),), 0, ns(9))
+    static = static_info(comparison(0, "x", ">"))
+    report = MissionReport("epoch", recording, static, rank_marks(recording, static))
+    text = written(tmp_path, report)
+    card = next(iter(numbers_of(text)["cards"].values()))
+    assert (card["low"], card["high"]) == pytest.approx((0.05 - 0.08 * 17.45, 21.688), abs=0.001)
+    assert card["edges"] == [[], [0.0]]
+    assert "compared values beyond this plot, up to 1795763972<" in text
 
 
 @pytest.mark.parametrize("rows", values_that_break_plots())
@@ -78,7 +99,7 @@ def unpacked(text, kind):
 
 # Mark 2 is at 35 s of 40: shown from 15 s to the end, the window from 23 s, and what would do is
 # all below 0.5. Coverage t/60 stays at 0.5 from 30 s on; it is never above its limit of 0.6, which
-# never changes, so that it is told once. To try is below 29/60, of the middle of the window.
+# never changes, so that it is told once. The smallest change is to 0.499.
 def test_the_numbers_of_the_moving_figures(page_text):
     numbers = numbers_of(page_text)
     assert numbers["seconds"] == 40
@@ -89,7 +110,7 @@ def test_the_numbers_of_the_moving_figures(page_text):
     ]
     card = numbers["cards"]["m1-2-1"]
     assert (card["begin"], card["end"], card["mark"], card["window"]) == (15, 40, 35, 23)
-    assert (card["feasible"], card["suggested"], card["culprit"]) == ([[None, 0.5]], 0.483, True)
+    assert (card["feasible"], card["suggested"], card["culprit"]) == ([[None, 0.5]], 0.499, True)
     series = numbers["series"][card["series"]]
     assert series["of"] == 400
     times = unpacked(series["t"], "<f4")
@@ -146,6 +167,38 @@ def test_names_stay_names_in_the_figures(tmp_path, name, shown):
     assert not set("\x00\u202e\u2028") & set(text)
 
 
+# yaw_deg is turned into radians: the axis is in what is compared, the value to try in what is set.
+def test_an_axis_has_its_unit(tmp_path):
+    turned = Transform("affine", math.pi / 180, 0.0)
+    static = static_info(
+        comparison(0, "~yaw", name="limit_", transform=turned), comparison(1, "~range_m")
+    )
+    rows = [(t / 10, n, False, 0.1 + t / 1000, 0.5) for t in range(100) for n in (0, 1)]
+    recording = Recording("units", events(rows), (Mark(ns(9), "II"),), 0, ns(10))
+    report = MissionReport("units", recording, static, rank_marks(recording, static))
+    text = written(tmp_path, report)
+    cards = numbers_of(text)["cards"]
+    assert {card["label"] for card in cards.values()} == {"value in rad", "value in m"}
+    for label in ("value in rad", "value in m"):
+        assert f">{label}</text>" in text
+    shown = " ".join("".join(Page(text).text).split())
+    # 0.19, at the mark, is the nearest to 0.5: below it, and below 10.886 degrees. 10.8 degrees are
+    # 0.188496.
+    assert "smallest change: 10.8 °, here 0.188496 rad " in shown
+    assert "smallest change: 0.189 m " in shown
+
+
+# Three summaries: all True, all False, and True last after a flop, so that both were there.
+def test_the_strip_of_results_has_those_of_summaries():
+    builder = SummaryBuilder()
+    for begin, flops, result in ((1, 0, True), (2, 0, False), (3, 1, True)):
+        counts = (ns(begin), ns(begin + 1), 9, flops, 9, 0)
+        values = (2.4, 3.0, -1.0, -0.5, -0.7, 0.7, 2.0, 3.0)
+        builder.add(Summary(key(0), "/node", *counts, result, result, *values))
+    found = results_of(builder.build(), key(0), 0)
+    assert found.tolist() == [[1, 2, 3], [2, 3, 4], [1, 0, 0], [1, 0, 1]]
+
+
 # Under the policy edges a report is made of the first evaluation alone, where nothing flops; the
 # summary from 20 to 30 s has 100 evaluations of 2 to 2.5 against 3, the one from 40 s on lies after
 # the mark. 2.5 is the nearest. Nothing of the second comparison is in the events.
@@ -179,6 +232,12 @@ def test_summaries_are_drawn_as_spans(tmp_path):
         for card in cards
     ]
     assert spans == [[[20, 40], [30, 50], [2, 2], [2.5, 2.5]], [[20], [30], [2], [2.5]]]
+    # The strip below has their results: all False.
+    strips = [
+        [unpacked(one, "<f8").tolist() for one in numbers["series"][card["series"]]["results"]]
+        for card in cards
+    ]
+    assert strips == [[[20, 40], [30, 50], [0, 0], [0, 0]], [[20], [30], [0], [0]]]
     # 6000 columns of a hundredth of a second; the first evaluation stands alone at 1 s.
     lanes = dict(zip(numbers["timeline"]["labels"], numbers["timeline"]["runs"], strict=True))
     assert unpacked(lanes["b"], "<i4").tolist() == [FALSE, 2000, 1001]

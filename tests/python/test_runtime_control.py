@@ -11,8 +11,9 @@ from xmlrpc.server import SimpleXMLRPCRequestHandler, SimpleXMLRPCServer
 import pytest
 
 from pytpc.base.errors import RunError
+from pytpc.ros.node_status import chosen, values_of
 from pytpc.ros.ros1.connection import encode_header
-from pytpc.ros.ros1.instrumented_nodes import InstrumentedNodes, chosen, values_of
+from pytpc.ros.ros1.instrumented_nodes import InstrumentedNodes
 
 HOST = "127.0.0.1"
 
@@ -137,6 +138,34 @@ def test_node_that_answers_nonsense_is_one_that_does_not_answer(master, serve, a
     master.services["/a/tpc/reload"] = serve(answer)
     status = InstrumentedNodes(master.uri).reload("/a")
     assert not status.success and status.message.startswith("does not answer: ")
+
+
+# Each answers when all three are asked.
+def test_no_node_is_asked_behind_another_one(master):
+    together = threading.Barrier(3)
+
+    def run(listener: socket.socket) -> None:
+        with listener:
+            connection, _ = listener.accept()
+            with connection:
+                connection.recv(4096)
+                together.wait(60.0)
+                connection.sendall(trigger(True, "sink=off"))
+                connection.recv(4096)
+
+    listeners = [socket.create_server((HOST, 0)) for _ in range(3)]
+    threads = [threading.Thread(target=run, args=(one,)) for one in listeners]
+    for name, one, thread in zip("cab", listeners, threads, strict=True):
+        master.services[f"/{name}/tpc/reload"] = f"rosrpc://{HOST}:{one.getsockname()[1]}"
+        thread.start()
+    found = list(InstrumentedNodes(master.uri).reload_all(["/a", "/b", "/c"]))
+    for thread in threads:
+        thread.join()
+    assert [(status.node, status.success) for status in found] == [
+        ("/a", True),
+        ("/b", True),
+        ("/c", True),
+    ]
 
 
 def test_node_that_is_gone_does_not_answer(master):

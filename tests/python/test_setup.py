@@ -8,14 +8,13 @@ import shutil
 import signal
 import subprocess
 import time
-import tomllib
 from pathlib import Path
 
 import pytest
+import tomllib
 from packaging.requirements import Requirement
 
-from pytpc.base.paths import BUILD_TOOLS
-from pytpc.workspace.doctor.machine import COLCON_EXTENSIONS
+from pytpc.base.paths import COLCON_EXTENSIONS, build_tools
 
 ROOT = Path(__file__).parents[2]
 KINDS = ("", "-demo", "-test", "-llvm22")
@@ -46,7 +45,7 @@ def test_no_package_stands_twice():
 
 
 def test_a_user_gets_what_the_product_asks_for_and_nothing_else():
-    named = {package for words in BUILD_TOOLS.values() for package in words.split()}
+    named = {package for words in build_tools().values() for package in words.split()}
     named |= {"python3-" + name for name in COLCON_EXTENSIONS}
     assert set(packages("")) == named | set(BUILDS_TPC)
 
@@ -119,7 +118,7 @@ def test_setup_refuses_a_level_that_it_does_not_know():
         [ROOT / "tools/setup", "everything"], capture_output=True, text=True, check=False
     )
     assert ran.returncode == 1
-    assert ran.stderr == "setup: error: no level 'everything': user, demo or test\n"
+    assert ran.stderr == "setup: error: no level 'everything': user, demo, test or ros2\n"
 
 
 def test_one_version_everywhere():

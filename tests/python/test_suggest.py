@@ -10,7 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mission_samples import SummaryBuilder, comparison, events, key, link_unit, ns
 
-from pytpc.base.wording import exact, show
+from pytpc.base.wording import exact, show, tidy
 from pytpc.recording.summaries import Summary
 from pytpc.static.link_unit import ParameterRead, Transform
 
@@ -249,10 +249,19 @@ def test_equality_that_was_never_met():
 
 
 def test_next_to_zero():
-    # Not 0 > 10; True below 0: a hundredth of the way beyond it, not 5e-324.
-    assert ask([(99, 0, 10)], "II").value == -0.1
-    # 1e-12 > 10 is True from 0 on; 0 is the readable number.
-    assert ask([(99, 1e-12, 10)], "II").value == 0.0
+    # Not 0 > 10; True below 0, where nobody goes from 10.
+    found = ask([(99, 0, 10)], "II")
+    assert found.value is None
+    assert found.reason == "only a value of the other sign would have prevented it: below 0"
+    # Compared values of both signs make it a position: a hundredth of the way beyond 0, not 5e-324.
+    assert ask([*[(t, -3, 10) for t in range(50, 60)], (99, 0, 10)], "II").value is None
+    assert ask([*[(t, 12 - 15 * (t % 2), 10) for t in range(50, 60)], (99, 0, 10)], "II").value == (
+        -0.1
+    )
+    # 1e-12 > 10 is True from 0 on; 0 is the readable number, and it is said what 0 often means.
+    found = ask([(99, 1e-12, 10)], "II")
+    assert found.value == 0.0
+    assert "only 0, which often switches a check off, would have prevented it" in found.text
     # Nothing but zeros: some small number.
     assert ask([(99, 0, 0)], "II", ">=").value == 0.01
 
@@ -297,6 +306,8 @@ RELATIONS = st.sampled_from(["<", "<=", ">", ">="])
 def test_every_suggestion_holds_and_is_the_smallest(cmps, limit, relation, unit, kind):
     scale, offset = unit
     thresh = scale * limit + offset
+    # One within 1e-12 of a rounder number is shown as that, which the value to try may be, too.
+    assume(tidy(limit) == limit)
     check(cmps, thresh, relation, unit, kind, default=0.5)
 
 

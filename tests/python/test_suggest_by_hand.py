@@ -93,6 +93,13 @@ def ask(relation, cmps, kind, way, *, whole=False):
     return suggested(events(rows), found, 100, kind)
 
 
+def assert_is_across_zero(found, those):
+    """Nothing is suggested that nobody would try, and what would do is said."""
+    assert (found.value, found.direction) == (None, None)
+    assert found.reason == f"only a value of the other sign would have prevented it: {those}"
+    assert words(found.feasible) == those
+
+
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("relation", FIRST)
 @pytest.mark.parametrize("to", [True, False], ids=["to-true", "to-false"])
@@ -103,6 +110,9 @@ def test_the_last_flop(way, relation, to):
     found = ask(relation, cmps, "I", way)
     assert words(found.feasible) == SETS[way, name]
     assert found.current == WAYS[way][1]
+    if VALUES[way][name] < 0:
+        assert_is_across_zero(found, SETS[way, name])
+        return
     assert found.value == VALUES[way][name]
     assert found.direction == ("raise" if found.value > found.current else "lower")
 
@@ -118,6 +128,9 @@ def test_the_last_flop_of_whole_numbers(way, relation, to):
         # Between 0 and 1 there is none.
         assert found.reason == "no whole number would do: above 0 to below 1"
         assert words(found.feasible) == "above 0 to below 1"
+        return
+    if WHOLE[way][name] < 0:
+        assert_is_across_zero(found, SETS[way, name])
         return
     assert type(found.value) is int
     assert found.value == WHOLE[way][name]
@@ -153,6 +166,9 @@ def test_the_window(way, relation):
 def test_a_window_with_one_outcome(way, relation, cmp, name):
     found = ask(relation, (cmp, cmp), "II", way)
     assert words(found.feasible) == SETS[way, name]
+    if VALUES[way][name] < 0:
+        assert_is_across_zero(found, SETS[way, name])
+        return
     assert found.value == VALUES[way][name]
 
 
@@ -161,6 +177,6 @@ def test_the_sign_is_kept_without_need():
     found = ask("<", (100, 4), "I", "100/x")
     assert (found.value, found.limited_by) == (25, "sign")
     assert found.text == "raise limit from 4 to 25 (at least 25; sign)"
-    # With need it is not: 45 - 2x >= 100 has no positive x.
+    # With need it is not, which is said: 45 - 2x >= 100 has no positive x.
     found = ask(">", (4, 100), "I", "45-2x")
-    assert (found.value, found.limited_by) == (-27.5, "")
+    assert_is_across_zero(found, "at most -27.5")

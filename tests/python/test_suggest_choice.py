@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from mission_samples import comparison, events, link_unit
 
 from pytpc.diagnosis.suggestion.choice import Choice, Possible, choose, readable
+from pytpc.diagnosis.suggestion.plausible import NOBODY, Doubt
 from pytpc.diagnosis.thresholds.intervals import Interval, words
 from pytpc.recording.declaration import Declared
 from pytpc.static.link_unit import ParameterRead
@@ -111,7 +112,8 @@ def read_as(type_):
 
 # -3 > limit is False with 5 and True below -3, which an unsigned number cannot be.
 def test_an_unsigned_number():
-    assert ask([(99, -3, 5)], unit=read_as("int")).value == -4
+    minus = ask([(99, -3, 5)], unit=read_as("int"))
+    assert minus.reason == "only a value of the other sign would have prevented it: below -3"
     none = ask([(99, -3, 5)], unit=read_as("unsigned int"))
     assert none.reason == (
         "no value of its type, which holds no negative number would do: below -3"
@@ -163,7 +165,8 @@ def test_the_sign():
     assert choose(both, 5, Possible()) == Choice(20.1, Interval.above(20), "sign")
     wide = choose(both, 5, Possible(declared=declared(low=-50, high=50)))
     assert wide == Choice(-1.01, Interval.below(-1), "")
-    assert choose(both[:1], 5, Possible()) == Choice(-1.01, Interval.below(-1), "")
+    doubt = Doubt(NOBODY, "a value of the other sign", "sign")
+    assert choose(both[:1], 5, Possible()) == Choice(-1.01, Interval.below(-1), "", doubt)
     # From 0 no sign is lost.
     assert choose((Interval.below(-1), Interval.above(20)), 0, Possible()).value == -1.01
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import socket
 import struct
 import threading
@@ -44,12 +45,27 @@ class Server:
 
 
 class MasterServer:
+    """A master. While ``answers`` is not set it takes calls and answers none."""
+
     def __init__(self) -> None:
         self.publishers: dict[str, list[str]] = {}
         self.subscribers: dict[str, str] = {}
+        self.state: list = [[], [], []]
+        self.nodes: dict[str, str] = {}
+        self.params: dict[str, object] = {}
+        self.answers = threading.Event()
+        self.answers.set()
         self.rpc = Server(self)
 
     def _dispatch(self, method: str, arguments: tuple) -> list:
+        self.answers.wait()
+        asked = {
+            "getSystemState": lambda: self.state,
+            "lookupNode": lambda: self.nodes[arguments[1]],
+            "hasParam": lambda: arguments[1] in self.params,
+        }
+        if method in asked:
+            return [1, "", asked[method]()]
         if method == "registerSubscriber":
             _, topic, _, uri = arguments
             self.subscribers[topic] = uri
@@ -194,9 +210,11 @@ def test_frames_come_out_whole_however_the_stream_is_cut(messages, cuts):
     assert found == messages
 
 
-def test_a_length_that_no_message_has_is_an_error():
-    with pytest.raises(ValueError, match="4,294,967,295 bytes"):
-        Frames().feed(b"\xff\xff\xff\xff")
+# What is complete before it is a message all the same.
+def test_a_length_that_no_message_has_is_the_end():
+    frames = Frames()
+    assert frames.feed(b"\x02\0\0\0ab\xff\xff\xff\xff") == [b"ab"]
+    assert frames.is_lost
 
 
 def test_messages_of_a_publisher_that_was_there_before(master, publisher):
@@ -246,11 +264,18 @@ def test_connects_again_while_the_publisher_is_listed(master, publisher):
     assert publisher.accepted == 2
 
 
-def test_a_publisher_that_refuses_makes_no_messages(master):
-    refusing = Publisher({"error": "md5sums do not match"})
+# No bag can hold a message without a type or its sum.
+@pytest.mark.parametrize(
+    "answer",
+    [{"error": "md5sums do not match"}, {"type": "a/B"}, {"type": "a/B", "md5sum": ""}],
+)
+def test_a_publisher_that_refuses_makes_no_messages(master, answer):
+    refusing = Publisher(answer)
     subscriber = RawSubscriber(Master(master.rpc.uri, "/me"), HOST, ["/chat"])
     master.tell("/chat", [refusing.rpc.uri])
-    wait_for(lambda: refusing.accepted)
+    wait_for(lambda: refusing.connections)
+    with contextlib.suppress(OSError):
+        refusing.send(b"one")
     assert collect(subscriber, 1, seconds=0.3) == []
     subscriber.close()
     refusing.close()

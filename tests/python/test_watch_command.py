@@ -24,7 +24,7 @@ S = 10**9
 
 @pytest.fixture
 def mission(tmp_path: Path) -> Path:
-    """The example alone in a folder; marks go beside it."""
+    """A copy of the example; marks go into it."""
     return shutil.copytree(EXAMPLE, tmp_path / "mission")
 
 
@@ -46,7 +46,7 @@ def test_the_ranking_goes_with_the_clock_and_is_kept_at_marks(mission: Path, tmp
     with watch(mission) as screen:
         screen.wait_for("0:00.0 of 1:28.1, stopped", "Type I: what changed last")
         screen.press("\x1b[A")
-        screen.wait_for("1:00.0 of", "1 ~min_coverage_limit", "8,816 reports of 3 nodes")
+        screen.wait_for("1:00.0 of", "1 ~min_coverage_limit", "8,816 evaluations of 3 nodes")
         screen.press("2")
         screen.wait_for("marked: type II", "1:00.0  II  1 ~min_coverage_limit, 2 ")
         screen.press("n")
@@ -70,7 +70,7 @@ def test_the_ranking_goes_with_the_clock_and_is_kept_at_marks(mission: Path, tmp
         before = screen.terminal.before
         end(screen)
         assert termios.tcgetattr(screen.terminal.child) == before
-    assert read_marks(tmp_path / "mission.marks.csv") == (Mark(80 * S + BEGIN_NS, "I"),)
+    assert read_marks(mission / "marks.csv") == (Mark(80 * S + BEGIN_NS, "I"),)
 
 
 def test_headings_are_bold_and_stand_above_their_columns(mission: Path):
@@ -161,7 +161,7 @@ def test_a_signal_leaves_the_terminal_as_it_was(mission: Path, number: signal.Si
         assert b"\x1b[?1049l" in screen.terminal.output
         assert b"\x1b[?25h" in screen.terminal.output
         assert termios.tcgetattr(screen.terminal.child) == screen.terminal.before
-    assert len(read_marks(mission.with_name("mission.marks.csv"))) == 1
+    assert len(read_marks(mission / "marks.csv")) == 1
 
 
 def once(mission: Path, *options: str) -> subprocess.CompletedProcess[str]:
@@ -176,12 +176,12 @@ def test_once_prints_a_table(mission: Path):
     done = once(mission, "--once", "--seconds", "60", "--top", "2")
     assert (done.returncode, done.stderr) == (0, "")
     lines = done.stdout.splitlines()
-    assert lines[0] == "at 1:00.0: 8,816 reports of 3 nodes"
+    assert lines[0] == "at 1:00.0: 8,816 evaluations of 3 nodes"
     assert [line.split()[1] for line in lines if line.startswith("  1 ")][1] == (
         "~min_coverage_limit"
     )
     assert not any(line.startswith("  3 ") for line in lines)
-    assert not mission.with_name("mission.marks.csv").exists()
+    assert not (mission / "marks.csv").exists()
 
 
 # The table of `rank` at the second mark (57.3 s), to the last digit.

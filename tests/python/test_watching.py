@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import struct
 
 import pytest
@@ -20,7 +21,7 @@ from pytpc.recording.marks import Mark
 from pytpc.recording.mission import ReadName, Recording
 from pytpc.recording.summaries import Summary
 from pytpc.ros.ros1.publisher import encode_string
-from pytpc.ros.ros1.subscriber import Source
+from pytpc.ros.source import Source
 from pytpc.static.link_unit import ParameterRead
 from pytpc.static.static_info import StaticInfo
 
@@ -104,7 +105,7 @@ def test_many_objects_are_learned_at_once(monkeypatch):
         for number in range(2, 302):
             found.take(Seen(at * S, f"{key(0)}#{number}", "/a", cmp > 3, cmp, 3, cmp > 3))
     rows = found.look(110 * S, 1000).rows["I"]
-    assert (len(learned), found.reports, found.unknown) == (1, 600, {})
+    assert (len(learned), found.evaluations, found.unknown) == (1, 600, {})
     assert len(rows) == 300
     assert {row.flop_s for row in rows} == {9}
 
@@ -151,14 +152,14 @@ def test_a_flop_is_one_node_s():
 def test_keys_of_another_build_are_counted():
     found = watching(seen(100, 7, 1, 2), seen(101, 7, 1, 2), seen(101, 0, 1, 2))
     assert found.unknown == {key(7): 2}
-    assert found.reports == 3
+    assert found.evaluations == 3
 
 
 def test_a_copy_goes_its_own_way():
     one = watching(*EVENTS[:2])
     other = one.snapshot()
     other.take(EVENTS[2])
-    assert (one.reports, other.reports) == (2, 3)
+    assert (one.evaluations, other.evaluations) == (2, 3)
     assert one.look(110 * S, 5).rows["I"] == ()
     assert len(other.look(110 * S, 5).rows["I"]) == 1
     assert other.static_info is STATIC
@@ -173,7 +174,7 @@ def test_a_summary_is_many_evaluations():
     )  # fmt: skip
     found = watching()
     found.take_summary(summary)
-    assert found.reports == 10
+    assert found.evaluations == 10
     (row,) = found.look(105 * S, 5).rows["II"]
     assert row.suspect.score == pytest.approx(4 / 6)
     assert row.last is not None
@@ -227,7 +228,7 @@ def test_side_by_side_on_a_wide_screen():
     for row in lines[lines.index(titles) + 2 : lines.index(titles) + 3]:
         assert row.index("~speed") == heads.index("Parameter")
         assert row.rindex("~speed") == heads.rindex("Parameter")
-    assert "6 reports of 1 node, 2/s" in lines
+    assert "6 evaluations of 1 node, 2/s" in lines
     assert lines[-1].startswith("1 should not have  2 should be doing  3 wrong")
 
 
@@ -358,7 +359,7 @@ def test_going_back_in_a_recording_is_never_having_been_further():
             for item in items:
                 assert isinstance(item, Seen)
                 found.take(item)
-        return str(found.look(stops[-1] * S, 5)) + str(found.reports)
+        return str(found.look(stops[-1] * S, 5)) + str(found.evaluations)
 
     there = [look_after(stop) for stop in (40, 0, 119)]
     assert len(set(there)) == 3
@@ -390,7 +391,7 @@ def test_the_clock_of_a_graph():
         # 101 s is out of order, 50 s is another run: what was before is no part of it.
         assert feed.take(101 * S)[0] is found
         again, _ = feed.take(50 * S)
-        assert (again.reports, found.reports) == (0, 2)
+        assert (again.evaluations, found.evaluations) == (0, 2)
         assert "the clock was set back, so the ranking started again" in feed.fault()
         assert "http://127.0.0.1:9 does not answer" in feed.fault()
     finally:
@@ -438,6 +439,29 @@ def test_columns_go_one_by_one_as_room_goes(width: int, headings: list[str]):
     lines = texts(table(look, "II", width, 5, utf8=True))
     assert lines[1].split() == headings
     assert lines[2].split()[1] == "~speed"
+
+
+@pytest.mark.parametrize(("width", "first"), [(45, "Trend of the"), (30, "Bold: the")])
+def test_only_columns_that_are_shown_are_explained(width: int, first: str):
+    lines = texts(shown(width, 40, WatchOptions(layout=("II",))))
+    legend = [line for line in lines if line.startswith(("Trend of", "Bold:"))]
+    assert [line[: len(first)] for line in legend] == [first]
+
+
+# 0.3 is 0.30000001192092896 as a 32-bit float: eight digits are the first that show it.
+@pytest.mark.parametrize(
+    ("cmp", "thresh", "text"),
+    [
+        (0.30000001192092896, 0.3, "0.30000001 > 0.3"),
+        (0.3, 0.3, "0.3 > 0.3"),
+        (0.123456, 0.5, "0.123 > 0.5"),
+        (math.nan, math.nan, "nan > nan"),
+    ],
+)
+def test_the_last_comparison_has_no_more_digits_than_tell_its_numbers_apart(cmp, thresh, text):
+    look = watching(*EVENTS, seen(110, 0, cmp, thresh)).look(110 * S, 5)
+    (row,) = [row for row in look.rows["I"] if row.suspect.parameter == "~speed"]
+    assert text in table(look, "I", 100, 5, utf8=True)[2].plain, row
 
 
 # Both changed at 102 s: (103 - 102) * (1 + 1) = 2 for either.

@@ -79,7 +79,7 @@ def test_a_workspace_without_packages_is_one_clear_line(tmp_path: Path, there: b
         (folder / "src").mkdir(parents=True)
     with pytest.raises(WorkspaceError) as caught:
         find_packages(folder)
-    reason = "no packages here: no package.xml in this folder or below"
+    reason = "no packages here: no package.xml in this folder or below; give the one with src"
     assert str(caught.value) == f"{folder}: {reason if there else 'no such folder'}"
 
 
@@ -191,7 +191,7 @@ def test_absent_tools_are_one_line_with_the_command(
 ) -> None:
     monkeypatch.setattr(paths, "SYSTEM_PATH", str(tmp_path))
     monkeypatch.setenv("PATH", str(tmp_path))
-    for name in paths.BUILD_TOOLS:
+    for name in paths.build_tools():
         add_program(tmp_path, name)
     assert paths.require_tools()["clang-19"] == tmp_path / "clang-19"
     (tmp_path / "llvm-ranlib-19").unlink()

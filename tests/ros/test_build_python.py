@@ -16,6 +16,7 @@ from pytpc.python_runtime.listed import read_table
 from pytpc.static.static_info import StaticInfo
 from pytpc.workspace import patch
 from pytpc.workspace.colcon import BuildError, BuildOptions, build_environment
+from terminals import Terminal, pytpc
 
 try:
     for half in (cmake_file, plugin, log_library):
@@ -122,3 +123,11 @@ def test_python_of_a_package_that_is_left_alone(tmp_path: Path) -> None:
     # The target is there, so the script is called as it is beside it.
     assert names(result.static) == ["camera/node", "mission/pump", "mission/scripts/mission.py"]
     assert [one.link_unit for one in result.static.left_out] == ["mission", "scripts/broken.py"]
+
+
+def test_a_person_is_told_what_to_type_next(built: Path) -> None:
+    with Terminal(pytpc("build", str(built)), built) as terminal:
+        assert terminal.wait(300) == 0
+        assert f"next: pytpc run {built} LAUNCH" in terminal.text
+    # Programs that read the output are not.
+    assert "next:" not in run("build", built)

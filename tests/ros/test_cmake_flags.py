@@ -54,7 +54,7 @@ def run(command: list[str | Path], **variables: str) -> subprocess.CompletedProc
         env={**kept, "PATH": SYSTEM_PATH, **variables},
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=900,
         check=False,
     )
 

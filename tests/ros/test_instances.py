@@ -22,7 +22,8 @@ from pytpc.ingest.ros1 import decode_log
 from pytpc.recording.mission import Recording
 from pytpc.ros.ros1.graph import RosGraph
 from pytpc.ros.ros1.master import Master
-from pytpc.ros.ros1.subscriber import RawSubscriber, Source
+from pytpc.ros.ros1.subscriber import RawSubscriber
+from pytpc.ros.source import Source
 from pytpc.static.link_unit import Comparison
 from pytpc.static.static_info import StaticInfo, collect
 from pytpc.workspace.colcon import build_environment

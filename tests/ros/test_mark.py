@@ -7,12 +7,14 @@ import time
 from pathlib import Path
 
 import pytest
+from recorded_robot import make_workspace
 
 from pytpc.ingest.reading import read
 from pytpc.recording.marks import Mark, read_marks
 from pytpc.ros.ros1.graph import GraphProcess, RosGraph
 from pytpc.ros.ros1.master import Master
 from pytpc.ros.ros1.publisher import MessageType, RawPublisher, encode_time
+from pytpc.ros.ros1.subscriber import RawSubscriber
 from terminals import Terminal, pytpc
 
 # The layout is that of std_msgs/Time under another name; rosbag needs the definition.
@@ -45,14 +47,24 @@ def end(*terminals: Terminal) -> None:
         assert terminal.wait() == 0
 
 
+def test_marks_that_no_recorder_got_are_not_promised(graph: RosGraph, tmp_path: Path):
+    with mark(graph, tmp_path, "ana") as ana:
+        ana.wait_for("no recorder listens")
+        ana.press("1")
+        ana.wait_for("1 message kept")
+        end(ana)
+        assert "no recorder on this graph got all of them; to add them to a recording: " in ana.text
+        assert "a recording of this graph has them" not in ana.text
+
+
 def test_keys_of_two_observers_are_marks_in_the_bag(graph: RosGraph, tmp_path: Path):
     bag = tmp_path / "marks.bag"
     begin = time.time_ns()
     with mark(graph, tmp_path, "ana") as ana, mark(graph, tmp_path, "lab/ben") as ben:
-        ana.wait_for("nobody listens; wall time")
+        ana.wait_for("no recorder listens; start one with: pytpc record; wall time")
         # Nobody listens to this one yet: the recorder gets it when it comes.
         ana.press("1")
-        ana.wait_for("1 message kept for later listeners")
+        ana.wait_for("1 message kept for a recorder that starts within 60 s")
         recorder = record(graph, bag)
         for terminal in (ana, ben):
             terminal.wait_for("1 node listening; wall time")
@@ -67,6 +79,7 @@ def test_keys_of_two_observers_are_marks_in_the_bag(graph: RosGraph, tmp_path: P
         ben.press("u")
         ben.wait_for("taken back: type I")
         end(ana, ben)
+        assert "a recording of this graph has them" in ana.text
         time.sleep(0.5)
         graph.stop(recorder)
     # `rosbag` may end before the recorder that it started has given the bag its name.
@@ -85,6 +98,38 @@ def test_keys_of_two_observers_are_marks_in_the_bag(graph: RosGraph, tmp_path: P
     assert sorted(files, key=Mark.order) == list(found)
 
 
+# The listener hears of the topics from the master at once; rosbag asks it once a second.
+# The first mark has to wait for both, although the observer leaves right after it.
+@pytest.mark.parametrize("command", ["mark", "watch"])
+def test_the_first_mark_is_in_the_bag_of_all_topics(graph: RosGraph, tmp_path: Path, command: str):
+    bag = tmp_path / "all.bag"
+    recorder = graph.start("record", ["rosbag", "record", "-a", "-O", str(bag)], patience_s=20.0)
+    until = time.monotonic() + 30
+    while not any("/record_" in name for name in Master(graph.uri, "/t").state().nodes):
+        assert time.monotonic() < until
+        time.sleep(0.05)
+    given = ["--static", str(make_workspace(tmp_path / "ws"))] if command == "watch" else []
+    environment = {**graph.env, "PYTHONPATH": str(Path(__file__).parents[2])}
+    heard = RawSubscriber(Master(graph.uri, "/listener"), "127.0.0.1", ["/mark_action"])
+    try:
+        words = pytpc(command, *given, "-o", "marks.csv")
+        with Terminal(words, tmp_path, env=environment, columns=120, lines=30) as terminal:
+            terminal.wait_for("connected;")
+            terminal.press("1q")
+            assert terminal.wait() == 0
+        until = time.monotonic() + 10
+        while not list(heard.poll(0.1)):
+            assert time.monotonic() < until
+    finally:
+        heard.close()
+    graph.stop(recorder)
+    until = time.monotonic() + 10
+    while not bag.exists() and time.monotonic() < until:
+        time.sleep(0.1)
+    assert [mark.type for mark in read(bag).marks] == ["I"]
+    assert read(bag).marks == read_marks(tmp_path / "marks.csv")
+
+
 # A clock at 1,000.5 s as rosbag play --clock publishes it, whether or not somebody has thought of
 # /use_sim_time. Both marks are made while it stands.
 @pytest.mark.parametrize("said_so", [True, False])
@@ -100,9 +145,11 @@ def test_the_time_is_that_of_clock(graph: RosGraph, tmp_path: Path, said_so: boo
                 terminal.wait_for("not marked: the graph has no time yet")
             clock.register()
             until = time.monotonic() + 10
-            while clock.publish("/clock", encode_time(1000_500_000_000)) == 0:
+            # With simulated time, rosout listens, too.
+            while not any("tpc_mark" in name for name in clock.listeners()):
                 assert time.monotonic() < until
                 time.sleep(0.05)
+            clock.publish("/clock", encode_time(1000_500_000_000))
             terminal.wait_for("simulated time")
             terminal.press("12")
             terminal.wait_for("marked: type II")

@@ -96,7 +96,7 @@ def test_node_waits_for_what_comes_by_another_connection(robot, tmp_path, node, 
     with RosGraph(robot.env, tmp_path) as graph:
         graph.start(node, [f"{installed}/lib/navigation/{node}"])
         done = subprocess.run(
-            probe, check=False, env=graph.env, capture_output=True, text=True, timeout=120
+            probe, check=False, env=graph.env, capture_output=True, text=True, timeout=900
         )
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout) == answer

@@ -14,15 +14,14 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from started_by_hand import roslaunch
 
 from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import SYSTEM_PATH, cmake_file, log_library, plugin, require_ros
 from pytpc.cli.main import main
 from pytpc.ingest.reading import read
-from pytpc.ros.ros1.graph import RosGraph
 from pytpc.static.static_info import StaticInfo
 
-ROOT = Path(__file__).parents[2]
 LAUNCH = "src/talk/launch/talk.launch"
 PATIENCE_S = 120
 COUNT = 70
@@ -165,28 +164,6 @@ def test_record_has_the_reports_of_python_nodes(name, request, tmp_path):
     check(out / "tpc", workspace / ".tpc/static.json")
 
 
-def roslaunch(tmp_path: Path, words: str, launch: Path) -> str:
-    """What a user types in a shell of their own; returns what was said."""
-    (tmp_path / "home").mkdir()
-    user = {"PATH": SYSTEM_PATH, "HOME": str(tmp_path / "home"), "PYTHONPATH": str(ROOT)}
-    with RosGraph(user, tmp_path / "graph") as graph:
-        sink = {
-            "TPC_SINK": "file",
-            "TPC_FOLDER": str(tmp_path / "tpc"),
-            "TPC_FILE_RESERVE": "0",
-        }
-        ran = subprocess.run(
-            ["bash", "-c", f"set -e; {words}; roslaunch {shlex.quote(str(launch))}"],
-            env={**graph.env, **sink},
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            check=False,
-            timeout=PATIENCE_S,
-        )
-    return ran.stdout
-
-
 def pytpc_env(*words: str | Path) -> str:
     command = shlex.join([sys.executable, "-m", "pytpc", "env", *map(str, words)])
     return f'eval "$({command})"'
@@ -194,12 +171,12 @@ def pytpc_env(*words: str | Path) -> str:
 
 def test_env_and_roslaunch_in_a_devel_space(devel, tmp_path):
     words = f"source {shlex.quote(str(devel / 'devel/setup.bash'))}; {pytpc_env(devel)}"
-    said = roslaunch(tmp_path, words, devel / LAUNCH)
+    said = roslaunch(tmp_path, words, shlex.quote(str(devel / LAUNCH)))
     assert "tpc:" not in said
     check(tmp_path / "tpc", devel / ".tpc/static.json")
 
 
 def test_env_with_setup_in_an_install_space(built, tmp_path):
-    said = roslaunch(tmp_path, pytpc_env(built, "--setup"), built / LAUNCH)
+    said = roslaunch(tmp_path, pytpc_env(built, "--setup"), shlex.quote(str(built / LAUNCH)))
     assert "tpc:" not in said
     check(tmp_path / "tpc", built / ".tpc/static.json")

@@ -12,10 +12,11 @@ from pathlib import Path
 import pytest
 
 from pytpc.base.errors import MissingToolError
+from pytpc.base.signals import Stop
 from pytpc.recording.mission import Dropped, load_recording
-from pytpc.ros.mission_run import Progress
-from pytpc.ros.ros1 import record_mission
+from pytpc.ros.mission_run import Progress, RecordOptions
 from pytpc.ros.ros1.graph import RosGraph
+from pytpc.ros.ros1.mission_watch import MissionWatch
 from pytpc.values.trace import Trace
 
 ROOT = Path(__file__).parents[2]
@@ -68,7 +69,8 @@ def test_parameters_are_awaited_though_the_master_hangs(tmp_path: Path) -> None:
                 os.kill(master, signal.SIGCONT)
 
         launched = graph.start("launch", ["sleep", "600"])
-        watch = record_mission._Watch(graph, launched, tmp_path, time.monotonic(), look)
+        options = RecordOptions(tmp_path, on_progress=look)
+        watch = MissionWatch(graph, launched, options, Stop(), time.monotonic())
         watch.wait_for_parameters(begun)
         assert len(looks) >= 2
         assert graph.call("getParamNames") == ["/set"]
@@ -133,4 +135,6 @@ def test_no_master(tmp_path: Path) -> None:
     )
     assert done.returncode == 1
     assert "pytpc: error: the ROS master at http://127.0.0.1:9" in done.stderr
+    assert "pytpc record WORKSPACE LAUNCH" in done.stderr
+    assert "recording http" not in done.stderr
     assert "Traceback" not in done.stderr

@@ -56,7 +56,7 @@ def nodes(tmp_path_factory) -> Path:
         ["cmake", "-S", str(SOURCES), "-B", str(folder), *options],
         ["cmake", "--build", str(folder)],
     ):
-        done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=120)
+        done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=900)
         assert done.returncode == 0, done.stdout + done.stderr
     return folder
 
@@ -576,7 +576,7 @@ def test_relay_passes_on_and_a_bag_of_both_topics_has_each_report_once(graph, no
     passer = relay(graph)
     bag, status = tmp_path / "both.bag", tmp_path / "status.json"
     command = [sys.executable, "-m", "pytpc.ros.ros1.recorder"]
-    command += ["--bag", str(bag), "--status", str(status)]
+    command += ["--bag", str(bag), "--status", str(status), "--parent", str(os.getpid())]
     path = {"PYTHONPATH": str(project_root())}
     recorder = graph.start("recorder", [*command, "/rosout", TOPIC], env=path, patience_s=15.0)
     until(lambda: status.exists() and json.loads(status.read_text())["ready"])

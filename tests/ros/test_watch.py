@@ -96,17 +96,17 @@ def test_reports_of_all_ways_are_ranked_and_marked(graph: RosGraph, static: Path
     heard = RawSubscriber(Master(graph.uri, "/listener"), "127.0.0.1", ["/mark_no_action"])
     try:
         with watch(graph, static) as screen:
-            screen.wait_for("watching on", "0 reports of 0 nodes")
+            screen.wait_for("watching on", "0 evaluations of 0 nodes")
             logs.wait_for_listeners("tpc_relay", "tpc_watch")
             python.wait_for_listeners("tpc_watch", topic="/threshold_information")
             for cmp in (4, 2, 4):
                 logs.log(f"threshold_information:{report(0, cmp, 3)}")
             for cmp in (0.0, 0.5, 0.99):
                 python.line(report(1, cmp, 1))
-            screen.wait_for("6 reports of 2 nodes", "~flops", "~near")
+            screen.wait_for("6 evaluations of 2 nodes", "~flops", "~near")
             time.sleep(1.0)
             screen.read()
-            assert "6 reports of 2 nodes" in screen.text
+            assert "6 evaluations of 2 nodes" in screen.text
             screen.press("2")
             screen.wait_for("marked: type II", "II  1 ~")
             until = time.monotonic() + 5
@@ -131,7 +131,7 @@ def test_a_master_that_is_restarted(static: Path, tmp_path: Path):
     with RosGraph(dict(os.environ), tmp_path / "first") as graph:
         port = graph.uri.rpartition(":")[2]
         with watch(graph, static) as screen:
-            screen.wait_for("0 reports of 0 nodes", "connected")
+            screen.wait_for("0 evaluations of 0 nodes", "connected")
             graph.stop(graph._processes[0])
             screen.wait_for("does not answer", "the ROS master is gone")
             graph.start("again", ["rosmaster", "--core", "-p", port])
@@ -140,7 +140,7 @@ def test_a_master_that_is_restarted(static: Path, tmp_path: Path):
             try:
                 node.wait_for_listeners("tpc_watch")
                 node.log(f"threshold_information:{report(0, 4, 3)}")
-                screen.wait_for("1 report of 1 node")
+                screen.wait_for("1 evaluation of 1 node")
             finally:
                 node.publisher.close()
             screen.press("q")
@@ -161,7 +161,7 @@ def test_once_as_json(graph: RosGraph, static: Path):
         finally:
             process.kill()
             node.publisher.close()
-    assert (said["reports"], said["unknown_keys"], said["lost"], said["nodes"]) == (5, 1, 0, 1)
+    assert (said["evaluations"], said["unknown_keys"], said["lost"], said["nodes"]) == (5, 1, 0, 1)
     names = [one["parameter"] for one in said["rankings"]["I"]["suspects"]]
     assert sorted(names) == ["~flops", "~near"]
     assert said["rankings"]["combined"]["suspects"][0]["node"] == "/logs"

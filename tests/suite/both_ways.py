@@ -28,10 +28,11 @@ from genpy.dynamic import generate_dynamic
 
 from pytpc.base.errors import RunError
 from pytpc.ingest.ros1 import decode_log
+from pytpc.ros.intake import BATCH, REPORT
 from pytpc.ros.ros1.graph import GraphProcess, RosGraph
 from pytpc.ros.ros1.master import Master
-from pytpc.ros.ros1.recorder import BATCH, REPORT
-from pytpc.ros.ros1.subscriber import RawSubscriber, Source
+from pytpc.ros.ros1.subscriber import RawSubscriber
+from pytpc.ros.source import Source
 from suite.expectations import PACKAGE, load
 
 NODES_AT_ONCE = 12

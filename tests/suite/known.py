@@ -4,3 +4,6 @@ KNOWN: dict[str, str] = {}
 
 # The same for Python nodes.
 PYTHON_KNOWN: dict[str, str] = {}
+
+# The same for those of ROS 2.
+RCLPY_KNOWN: dict[str, str] = {}

@@ -1,6 +1,7 @@
 """Prints what the analysis finds of what a reader finds, node by node: ``tools/suite-report``.
 
-With ``--python`` it is the suite of Python nodes, which need not be built.
+With ``--python`` it is the suite of Python nodes, with ``--rclpy`` that of ROS 2, which need not be
+built.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from pathlib import Path
 from pytpc.base.errors import RunError, TpcError
 from pytpc.static.static_info import StaticInfo
 from suite.build import build_suite
-from suite.expectations import PYTHON_PACKAGE, Verdict, judge, load, nodes
+from suite.expectations import PYTHON_PACKAGE, RCLPY_PACKAGE, Verdict, judge, load, nodes
 
 
 def judge_all(static: StaticInfo, package: Path | None = None) -> list[Verdict]:
@@ -57,14 +58,14 @@ def table(verdicts: Sequence[Verdict], *, only_wrong: bool = False) -> str:
     return "\n".join(lines)
 
 
-def analyse_python(folder: Path) -> StaticInfo:
+def analyse_python(folder: Path, package: Path | None = None) -> StaticInfo:
     """What ``pytpc analyse`` finds in the Python nodes, constants among it.
 
     Raises:
         RunError: the command fails.
     """
     output = folder / "static.json"
-    words = ["analyse", str(PYTHON_PACKAGE), "--constants", "-o", str(output)]
+    words = ["analyse", str(package or PYTHON_PACKAGE), "--constants", "-o", str(output)]
     command = [sys.executable, "-m", "pytpc", *words]
     ran = subprocess.run(command, capture_output=True, text=True, check=False)
     if ran.returncode:
@@ -77,10 +78,13 @@ def main() -> None:
     """Build the suite, or read what was built, and print the table."""
     parser = argparse.ArgumentParser(prog="suite-report", description=__doc__)
     parser.add_argument("--python", action="store_true", help="the suite of Python nodes")
+    parser.add_argument("--rclpy", action="store_true", help="the suite of nodes of rclpy")
     parser.add_argument("--static", type=Path, help="static information of an earlier build")
     parser.add_argument("--build-type", default="RelWithDebInfo", help="CMAKE_BUILD_TYPE")
     parser.add_argument("--wrong", action="store_true", help="only the nodes that are not right")
     arguments = parser.parse_args()
+    python = PYTHON_PACKAGE if arguments.python else None
+    package = RCLPY_PACKAGE if arguments.rclpy else python
     try:
         if arguments.static:
             static = StaticInfo.load(arguments.static)
@@ -88,13 +92,13 @@ def main() -> None:
             with tempfile.TemporaryDirectory(prefix="tpc-suite-") as folder:
                 where = Path(folder)
                 static = (
-                    analyse_python(where)
-                    if arguments.python
+                    analyse_python(where, package)
+                    if package is not None
                     else build_suite(where / "ws", arguments.build_type).result.static
                 )
     except TpcError as error:
         raise SystemExit(f"error: {error}") from error
-    verdicts = judge_all(static, PYTHON_PACKAGE if arguments.python else None)
+    verdicts = judge_all(static, package)
     print(table(verdicts, only_wrong=arguments.wrong))
     raise SystemExit(any(not verdict.is_right for verdict in verdicts))
 

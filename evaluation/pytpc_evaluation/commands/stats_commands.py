@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import json
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -13,11 +12,12 @@ from rich.text import Text
 
 from pytpc.base.atomic import write_atomic
 from pytpc.base.errors import InputError
-from pytpc.base.wording import many, plain
+from pytpc.base.wording import many, plain, plain_json
 from pytpc.cli.arguments import JSON, PATH
 from pytpc.cli.console import console, progress, warn
+from pytpc.cli.lines import say
 from pytpc.cli.options import STATIC, WINDOW, recording_of
-from pytpc.cli.sources import static_of
+from pytpc.cli.sources import static_for
 from pytpc.static.parameters import base_key
 from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.stats.figure_choice import Figures
@@ -86,7 +86,7 @@ _BY_NUMBER = {number: name for name, number in NUMBERS.items()}
 @WINDOW
 def stats_command(  # noqa: PLR0917
     paths: tuple[Path, ...],
-    static_source: Path,
+    static_source: Path | None,
     treatments: Path | None,
     names: tuple[str, ...],
     form: str,
@@ -108,8 +108,9 @@ def stats_command(  # noqa: PLR0917
     if several and output is None:
         raise click.UsageError("several tables as CSV: choose one by --table, or give -o FOLDER")
     folder = several or (output is not None and output.is_dir())
-    static = static_of([static_source])
     missions = load_missions(paths, treatments, recording_of)
+    first = missions[0]
+    static = static_for(static_source, first.source, first.recording)
     _check(missions, static)
     with progress("working out tables") as advance:
         tables = thesis_tables(missions, static, chosen, advance, window_s=window_s)
@@ -155,18 +156,18 @@ def _print(tables: Sequence[Table], form: str) -> None:
 def _write(tables: Sequence[Table], form: str, output: Path, *, folder: bool) -> None:
     if not folder:
         write_atomic(output, _text_of(tables, form).encode("utf-8", "backslashreplace"))
-        click.echo(f"{many(len(tables), 'table')}: {output}", err=True)
+        say(f"{many(len(tables), 'table')}: {output}")
         return
     for table in tables:
         target = output / f"{table.label}{_SUFFIXES[form]}"
         write_atomic(target, _text_of([table], form).encode("utf-8", "backslashreplace"))
-    click.echo(f"{many(len(tables), 'table')}: {output}", err=True)
+    say(f"{many(len(tables), 'table')}: {output}")
 
 
 def _text_of(tables: Sequence[Table], form: str) -> str:
     if form == "json":
         items = [{**as_json(table), "thesis": NUMBERS[table.label]} for table in tables]
-        return json.dumps(items, indent=1, ensure_ascii=False) + "\n"
+        return plain_json(items) + "\n"
     if form == "csv":
         return "\n".join(as_csv(table) for table in tables)
     if form == "latex":
@@ -204,4 +205,4 @@ def _draw(missions: Sequence[StudyMission], static: StaticInfo, wanted: Figures)
             on_progress=advance,
             on_trouble=lambda text: warn(plain(text)),
         )
-    click.echo(f"{many(len(drawn), 'figure')}: {wanted.folder}", err=True)
+    say(f"{many(len(drawn), 'figure')}: {wanted.folder}")

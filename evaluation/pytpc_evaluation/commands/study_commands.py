@@ -9,11 +9,10 @@ import click
 from rich.table import Table
 from rich.text import Text
 
-from pytpc.base.checked_json import dump_json
 from pytpc.base.errors import RunError
 from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import JSON, PATH, Command
-from pytpc.cli.console import console
+from pytpc.cli.console import console, print_json
 from pytpc_evaluation.commands.study_options import STUDY
 from pytpc_evaluation.commands.study_progress import StudyProgress
 from pytpc_evaluation.commands.study_report import report_command
@@ -97,7 +96,7 @@ def run_command(
     ):
         results = study.fly(study.all(), progress, jobs)
     if as_json:
-        click.echo(dump_json([_run_json(result) for result in results]).decode(), nl=False)
+        print_json([_run_json(result) for result in results])
     else:
         _show(results, out)
     _fail_where_any([result.error for result in results if result.error])
@@ -128,7 +127,7 @@ def suggested_command(
         failures |= {result.flight.label: result.error for result in results if result.error}
         rows = save_tried(flights, failures, out)
     if as_json:
-        click.echo(dump_json(rows).decode(), nl=False)
+        print_json(rows)
     else:
         _show_tried(rows, out)
     _fail_where_any(list(failures.values()))
@@ -145,7 +144,7 @@ def halves_command(*, as_json: bool) -> None:
     flights = [one for example in EXAMPLES for one in flights_of(example) if one.half]
     if as_json:
         rows = [{**_of(flight), "half": flight.half} for flight in flights]
-        click.echo(dump_json(rows).decode(), nl=False)
+        print_json(rows)
         return
     table = _table("System", "Treatment", "Type", "Seed", "Half")
     for flight in flights:

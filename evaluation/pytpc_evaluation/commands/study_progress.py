@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import time
 from types import TracebackType
-from typing import Self
+from typing import TYPE_CHECKING
 
-import click
 from rich.console import Console
 from rich.progress import (
     BarColumn,
@@ -19,11 +18,15 @@ from rich.progress import Progress as Bar
 from rich.text import Text
 
 from pytpc.base.wording import many, plain
+from pytpc.cli.lines import progress_console, say
 from pytpc.ros.mission_run import Progress
 from pytpc.workspace.colcon import BuildError
 from pytpc_evaluation.demo.demo_examples import Example
 from pytpc_evaluation.study.plan import Flight
 from pytpc_evaluation.study.run import Result
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
 _SILENT_S = 5.0
 
@@ -36,7 +39,7 @@ class StudyProgress:
 
     def __init__(self, what: str, console: Console | None = None) -> None:
         """``what`` is written in front of the bar."""
-        self._console = console or Console(stderr=True)
+        self._console = console or progress_console()
         self._bar = Bar(
             TextColumn("{task.description}"),
             BarColumn(),
@@ -67,7 +70,7 @@ class StudyProgress:
         self._bar.stop()
         if isinstance(error, BuildError):
             for line in error.tail:
-                click.echo(line, err=True)
+                say(line)
 
     def building(self, example: Example, line: str) -> None:
         """A line of a build."""
@@ -95,7 +98,7 @@ class StudyProgress:
         self._bar.update(self._task, description=Text(plain(f"{what}: {how_far}"[:60])).markup)
         if not self._console.is_terminal and time.monotonic() - self._told > _SILENT_S:
             self._told = time.monotonic()
-            click.echo(plain(f"{what}: {how_far}"), err=True)
+            say(plain(f"{what}: {how_far}"))
 
 
 def result_line(result: Result) -> str:

@@ -10,6 +10,7 @@ import click
 from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import JSON, PATH
 from pytpc.cli.console import progress, warn
+from pytpc.cli.lines import say
 from pytpc_evaluation.commands.study_options import (
     CHOSEN,
     RANK_AGAIN,
@@ -59,4 +60,4 @@ def report_command(
         warn(plain(trouble))
     if as_json:
         click.echo(json_text(made.numbers), nl=False)
-    click.echo(f"{many(len(made.files), 'file')} and {made.page}", err=True)
+    say(f"{many(len(made.files), 'file')} and {made.page}")

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from pytpc.cli.console import progress
+from pytpc.cli.lines import say
 from pytpc_evaluation.commands.study_options import (
     CHOSEN,
     RANK_AGAIN,
@@ -31,4 +32,4 @@ def sensitivity_command(*, out: Path, half: str, again: bool, jobs: int) -> None
 
     with progress("ranking by other people's marks") as advance:
         by_others().complete(out, CHOSEN[half], advance, again=again, jobs=jobs)
-    click.echo(f"{out / SENSITIVITY_FILE}", err=True)
+    say(f"{out / SENSITIVITY_FILE}")

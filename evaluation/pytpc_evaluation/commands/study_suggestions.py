@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict
 from pathlib import Path
 
@@ -12,7 +11,7 @@ from rich.text import Text
 
 from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import JSON
-from pytpc.cli.console import console, progress, warn
+from pytpc.cli.console import console, print_json, progress, warn
 from pytpc_evaluation.commands.study_options import CHOSEN, STUDY, half_option
 from pytpc_evaluation.study.methods import METHODS
 from pytpc_evaluation.study.resume import alone_with_results
@@ -66,7 +65,7 @@ def suggestions_command(
                 warn(plain(f"{chain.mission}, {chain.variant}: {one.reason}"))
     if as_json:
         document = [asdict(share) for share in shares(mine)]
-        click.echo(json.dumps(document, indent=1))
+        print_json(document)
         return
     _show(mine)
     left = {chain.mission for chain in mine if not chain.is_over}

@@ -8,15 +8,14 @@ import time
 from pathlib import Path
 
 import click
-from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.text import Text
 
 from pytpc.base.atomic import write_atomic
-from pytpc.base.checked_json import dump_json
 from pytpc.base.errors import WorkspaceError
 from pytpc.base.wording import many, plain
-from pytpc.cli.console import console, warn
+from pytpc.cli.console import console, print_json, warn
+from pytpc.cli.lines import progress_console, say
 from pytpc_evaluation.survey.static_tables import tables
 from pytpc_evaluation.survey.survey_documents import FORMATS, documents, faults
 from pytpc_evaluation.survey.surveying import Options, SurveyProgress, survey
@@ -108,7 +107,7 @@ def survey_command(
     for name, text in written.items():
         write_atomic(output / name, text.encode())
     if as_json:
-        click.echo(dump_json([result.to_json() for result in results]).decode(), nl=False)
+        print_json([result.to_json() for result in results])
     else:
         _print(results)
     _warn(results)
@@ -125,7 +124,7 @@ class _Progress:
     """A bar over the trees with the packages in work; without a terminal a line for each step."""
 
     def __init__(self) -> None:
-        self._console = Console(stderr=True)
+        self._console = progress_console()
         self._bar = Progress(
             TextColumn("{task.description}"),
             BarColumn(),
@@ -156,7 +155,7 @@ class _Progress:
             if not self._console.is_terminal:
                 seconds = time.monotonic() - self._began
                 where = f"{step.number}/{step.total} {plain(step.tree)}"
-                click.echo(f"[{seconds:.0f} s] {where}: {step.what}", err=True)
+                say(f"[{seconds:.0f} s] {where}: {step.what}")
         self._say_how_far(step)
         job = _JOB_LINE.match(step.line)
         if job is not None and step.line.startswith("Starting"):
@@ -175,7 +174,7 @@ class _Progress:
         """A line every two seconds, where there is no bar."""
         if step.far and not self._console.is_terminal and time.monotonic() - self._told > _SILENT_S:
             self._told = time.monotonic()
-            click.echo(f"{plain(step.tree)}: {step.what}: {step.far}", err=True)
+            say(f"{plain(step.tree)}: {step.what}: {step.far}")
 
 
 def _print(results: list[TreeResult]) -> None:

@@ -8,15 +8,20 @@ its treatment demands answers nothing, and is a failure of its own.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from rich.table import Table
 from rich.text import Text
 
-from pytpc.api.report import MissionReport
+from pytpc.api.comparing import RecordedRun, beside
+from pytpc.api.diagnosing import AskedMission
+from pytpc.api.missions import with_names_of
+from pytpc.api.report import CARDS, MissionReport
 from pytpc.base.errors import RunError
+from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
+from pytpc.diagnosis.results.diagnosis import Diagnosis
 from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.diagnosis.suggestion.smallest_change import At, smallest_change
 from pytpc.ingest.reading import read
@@ -25,6 +30,7 @@ from pytpc.recording.mission import EVENTS_FILE, MARKS_FILE, Recording, save_rec
 from pytpc.ros.mission_run import MISSION_DONE, MissionRun, Progress, RecordOptions
 from pytpc.ros.ros1.record_mission import run_mission
 from pytpc.static.static_info import StaticInfo
+from pytpc.values.origins import read_origins
 from pytpc_evaluation.demo.demo_examples import Example
 from pytpc_evaluation.treatment import Treatment, save_treatment
 
@@ -49,26 +55,43 @@ class TreatedMission:
         wanted = self.treatment.mark_type
         return [r for r in self.rankings if wanted is not None and r.mark.type == wanted]
 
-    def report(self, static_info: StaticInfo) -> MissionReport:
-        """What the report page needs of it."""
+    @property
+    def recorded(self) -> RecordedRun:
+        """The recording and its folder."""
+        return RecordedRun(self.recording, self.run.bag.parent)
+
+    def question(self, static_info: StaticInfo, good: Sequence[TreatedMission]) -> Question:
+        """What a user would ask who has the recordings of good missions."""
+        named = with_names_of(self.recording, static_info, self.run.bag)
+        runs = [one.recorded for one in good if one is not self]
+        return beside(PLAIN, runs, self.recorded, static_info, named)
+
+    def diagnosis(self, static_info: StaticInfo, good: Sequence[TreatedMission]) -> Diagnosis:
+        """The answer that a user gets."""
+        question = self.question(static_info, good)
+        return AskedMission.of(self.recorded, static_info, question).diagnosis
+
+    def report(self, static_info: StaticInfo, good: Sequence[TreatedMission]) -> MissionReport:
+        """What the report page needs of it: no more than a user could know."""
         return MissionReport(
             self.treatment.name,
             self.recording,
             static_info,
             self.rankings,
-            treatment=self.treatment.effect,
-            changed_parameter=self.treatment.parameter,
+            origins=read_origins(self.run.bag),
+            question=replace(self.question(static_info, good), top=CARDS),
+            source=self.run.bag.parent,
         )
 
 
 def run_treatment(
     example: Example,
     treatment: Treatment,
+    out_dir: Path,
     *,
     seed: int,
     install_env: Mapping[str, str],
     static_info: StaticInfo,
-    out_dir: Path,
     timeout_s: float,
     launch_args: Mapping[str, str] | None = None,
     on_progress: Callable[[Progress], None] | None = None,
@@ -78,10 +101,10 @@ def run_treatment(
     Args:
         example: the robot.
         treatment: its overlay and launch arguments are handed to the launch file.
+        out_dir: for the recording and what was read from it.
         seed: for all noise of the simulation and for the observer.
         install_env: see ``run_mission``.
         static_info: of the build that runs, and of its nodes in Python.
-        out_dir: for the recording and what was read from it.
         timeout_s: wall time after which the mission is ended.
         launch_args: more arguments for the launch file.
         on_progress: see ``run_mission``.
@@ -106,10 +129,31 @@ def run_treatment(
         until=MISSION_DONE,
         topics=example.watched,
         on_progress=on_progress,
+        static_info=static_info,
     )
     run = run_mission(install_env, options)
-    save_treatment(treatment, out_dir)
     recording = read(run.bag)
+    return treated(
+        example, treatment, seed=seed, run=run, recording=recording, static_info=static_info
+    )
+
+
+def treated(
+    example: Example,
+    treatment: Treatment,
+    *,
+    seed: int,
+    run: MissionRun,
+    recording: Recording,
+    static_info: StaticInfo,
+) -> TreatedMission:
+    """Keep what was recorded under a treatment, and rank the parameters at its marks.
+
+    Raises:
+        RunError: no node reported anything.
+    """
+    out_dir = run.bag.parent
+    save_treatment(treatment, out_dir)
     if not len(recording.events):
         raise RunError("no node reported a comparison: was the workspace built with TPC?", run.bag)
     save_recording(recording, out_dir)

@@ -23,7 +23,8 @@ class Example:
     the types of treatment that keep it from it, all but those in ``reached_under``, by name, where
     it is late or fails after it. ``shown`` are the treatments of the demonstration.
     ``simulator`` is the node that is the world, not the robot. ``study_rate`` is how many simulated
-    seconds the study flies in a second of the wall.
+    seconds the study flies in a second of the wall. ``ros2_types`` are the types of the messages on
+    ``watched``, if its nodes are of ROS 2.
     """
 
     name: str
@@ -37,15 +38,16 @@ class Example:
     reached_under: frozenset[str] = frozenset()
     simulator: str = "/uav_simulator"
     study_rate: float = 12.0
+    ros2_types: tuple[tuple[str, str], ...] = ()
 
     @property
     def folder(self) -> Path:
-        """The catkin package."""
+        """The package, of catkin or ament."""
         return project_root() / "examples" / self.name
 
     @property
     def launch(self) -> Path:
-        """Its launch file.
+        """The launch file of a robot of ROS 1.
 
         Its arguments: ``rate`` (of the simulated time), ``seed``, ``treatment`` and ``overlay2``
         (files of parameters, loaded one after the other), ``fault``, ``observer``.
@@ -162,8 +164,20 @@ NAVIGATION = Example(
     simulator="/ground_simulator",
 )
 
+IMAGE_CAPTURE_ROS2 = Example(
+    name="image_capture_ros2",
+    title="Image capture on ROS 2",
+    watched=("/camera/picture",),
+    goal_topic="/camera/picture",
+    reached="a picture was taken",
+    missed="no picture was taken",
+    missed_under=frozenset({"type2"}),
+    shown=("clean", "type1_face_detection_threshold", "type2_min_coverage_limit"),
+    ros2_types=(("/camera/picture", "sensor_msgs/CompressedImage"),),
+)
+
 EXAMPLES = (IMAGE_CAPTURE, WATER_SAMPLER, NAVIGATION)
-"""All robots, in the order of the study."""
+"""The robots of the study, in its order."""
 
 
 def link_package(example: Example, workspace: Path) -> None:

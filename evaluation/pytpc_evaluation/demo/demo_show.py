@@ -1,16 +1,17 @@
 """Shows an example on the terminal: builds it, flies its missions, ranks, writes the report.
 
-The demonstrations in ``examples/*/demo.py`` are this with an ``Example``.
+The demonstrations in ``examples/*/demo.py`` are this with an ``Example``, and with what builds it.
 """
 
 from __future__ import annotations
 
-import sys
 import time
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from typing import Protocol
 
 import click
 from rich.console import Console
@@ -19,8 +20,12 @@ from pytpc.api.report import write_missions
 from pytpc.base.errors import TpcError
 from pytpc.base.wording import many
 from pytpc.build.build import build_workspace, workspace_env
+from pytpc.cli.console import console as table_console
 from pytpc.cli.console import progress
+from pytpc.cli.lines import progress_console, say
 from pytpc.cli.mission_commands import mission_progress
+from pytpc.present.ranking_tables import print_diagnosis
+from pytpc.ros.mission_run import Progress
 from pytpc.ros.node_start import mission_env
 from pytpc.static.static_info import StaticInfo
 from pytpc.workspace.colcon import BuildError
@@ -29,20 +34,57 @@ from pytpc_evaluation.demo.demo_examples import Example, link_package
 from pytpc_evaluation.treatment import Treatment
 
 TIMEOUT_S = 150.0
-_PIPED_WIDTH = 160
+
+
+class Flight(Protocol):
+    """Flies one mission of a robot; ``out_dir`` is the mission's."""
+
+    def __call__(
+        self,
+        treatment: Treatment,
+        out_dir: Path,
+        *,
+        seed: int,
+        timeout_s: float,
+        on_progress: Callable[[Progress], None],
+    ) -> TreatedMission:
+        """Fly it.
+
+        Raises:
+            TpcError: it cannot be flown.
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class Ready:
+    """What flies: the static information of all nodes, and how a mission is flown."""
+
+    static: StaticInfo
+    flight: Flight
+
+
+Maker = Callable[[Example, Console, Path], AbstractContextManager[Ready]]
+"""Makes a robot ready below a folder, for as long as its missions are flown."""
 
 
 @dataclass(frozen=True)
 class Built:
-    """What flies: the robot, the static information of all nodes, the environment they run in."""
+    """A robot of ROS 1, the static information of all its nodes, their environment."""
 
     example: Example
     static: StaticInfo
     env: Mapping[str, str]
 
 
-def demonstration(example: Example, about: str) -> click.Command:
-    """The command line of a demonstration; ``about`` is its help."""
+def demonstration(example: Example, about: str, make: Maker | None = None) -> click.Command:
+    """The command line of a demonstration.
+
+    Args:
+        example: the robot.
+        about: the command's help.
+        make: how the robot is built; None: as a workspace of catkin.
+    """
 
     @click.command(help=about)
     @click.option(
@@ -54,17 +96,19 @@ def demonstration(example: Example, about: str) -> click.Command:
     @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True)
     @click.option("--treatment", "names", multiple=True, help="Fly this one; may be repeated.")
     def main(out: Path, seed: int, names: tuple[str, ...]) -> None:
-        console = Console(width=None if sys.stdout.isatty() else _PIPED_WIDTH)
+        console = table_console()
         try:
-            wrong = run_demo(example, console, out, seed, names)
+            wrong = run_demo(
+                example, console, out, seed=seed, names=names, make=make or built_workspace
+            )
         except BuildError as error:
             for line in error.tail:
-                click.echo(line, err=True)
+                say(line)
             raise SystemExit(f"demo: error: {error}") from None
         except TpcError as error:
             raise SystemExit(f"demo: error: {error}") from None
         except KeyboardInterrupt:
-            click.echo("demo: interrupted", err=True)
+            say("demo: interrupted")
             raise SystemExit(130) from None
         for sentence in wrong:
             console.print(f"FAILED  {sentence}", style="bold red", highlight=False)
@@ -74,7 +118,13 @@ def demonstration(example: Example, about: str) -> click.Command:
 
 
 def run_demo(
-    example: Example, console: Console, out: Path, seed: int, names: tuple[str, ...] = ()
+    example: Example,
+    console: Console,
+    out: Path,
+    *,
+    seed: int,
+    names: tuple[str, ...],
+    make: Maker,
 ) -> list[str]:
     """All of it; returns what went wrong, in sentences.
 
@@ -84,25 +134,34 @@ def run_demo(
         out: for the workspace, the recordings and the report.
         seed: see ``run_treatment``.
         names: the treatments; those of the demonstration where empty.
+        make: builds the robot.
 
     Raises:
         TpcError: it does not build, or a mission cannot be run.
     """
     treatments = example.treatments(names)
-    built = build(example, console, out)
-    if not names:
-        for treatment in treatments:
-            if not can_be_named(treatment, built.static):
-                console.print(f"=> {treatment.name} is left out: nothing compares its parameter")
-        treatments = [one for one in treatments if can_be_named(one, built.static)]
-    missions = [fly(console, treatment, seed, built, out) for treatment in treatments]
+    with make(example, console, out) as robot:
+        if not names:
+            for treatment in treatments:
+                if not can_be_named(treatment, robot.static):
+                    console.print(
+                        f"=> {treatment.name} is left out: nothing compares its parameter"
+                    )
+            treatments = [one for one in treatments if can_be_named(one, robot.static)]
+        missions = [fly(console, treatment, seed, robot, out) for treatment in treatments]
     page = out / "report.html"
     with step(console, "Write the report"), progress("drawing") as advance:
-        reports = [mission.report(built.static) for mission in missions]
+        good = [mission for mission in missions if mission.treatment.type == "clean"]
+        reports = [mission.report(robot.static, good) for mission in missions]
         title = f"{example.title}: suspected parameters"
         write_missions(page, reports, title=title, on_progress=advance)
+    for mission in missions:
+        if mission.rankings:
+            console.print(f"\n=> What pytpc says of {mission.treatment.name}", style="bold")
+            print_diagnosis(console, mission.diagnosis(robot.static, good))
+            console.print(f"   In truth: {mission.treatment.change or 'nothing was changed'}")
     console.print()
-    console.print(result_table(missions, built.static), highlight=False)
+    console.print(result_table(missions, robot.static), highlight=False)
     console.print(f"Report: {page}", highlight=False, soft_wrap=True)
     return [sentence for mission in missions for sentence in failures(mission)]
 
@@ -113,12 +172,20 @@ def can_be_named(treatment: Treatment, static: StaticInfo) -> bool:
     return treatment.parameter is None or treatment.parameter in compared
 
 
+@contextmanager
+def built_workspace(example: Example, console: Console, out: Path) -> Iterator[Ready]:
+    """A robot of ROS 1, built."""
+    built = build(example, console, out)
+    flight = partial(run_treatment, example, install_env=built.env, static_info=built.static)
+    yield Ready(built.static, flight)
+
+
 def build(example: Example, console: Console, out: Path) -> Built:
     """Build a workspace that holds a link to the example; its nodes in Python are analysed, too."""
     workspace = out / "ws"
     link_package(example, workspace)
     with step(console, "Build the mission's nodes with TPC"):
-        with Console(stderr=True).status("colcon build"):
+        with progress_console().status("colcon build"):
             result = build_workspace(workspace)
         tell_found(console, result.static)
     env = mission_env(workspace_env(result.bases.install), result.bases.static_info)
@@ -129,25 +196,23 @@ def tell_found(console: Console, static: StaticInfo) -> None:
     """Say in a line what the analysis found, and in which language; one place is one comparison."""
     places = [tpc for tpc in static.tpcs if tpc.type != "constant"]
     in_python = sum(static.unit_of(tpc.key).is_python for tpc in places)
-    some = f": {len(places) - in_python:,} in C++, {in_python:,} in Python" if in_python else ""
+    in_cpp = len(places) - in_python
+    some = f": {in_cpp:,} in C++, {in_python:,} in Python" if in_cpp and in_python else ""
     console.print(
         f"   {many(len(places), 'comparison')} of parameters found{some}", highlight=False
     )
 
 
 def fly(
-    console: Console, treatment: Treatment, seed: int, built: Built, out: Path
+    console: Console, treatment: Treatment, seed: int, robot: Ready, out: Path
 ) -> TreatedMission:
     """Run one mission and say in a line what happened."""
     with step(console, f"Mission {treatment.name}: {treatment.effect}"):
         with mission_progress(treatment.name) as advance:
-            mission = run_treatment(
-                built.example,
+            mission = robot.flight(
                 treatment,
+                out / treatment.name,
                 seed=seed,
-                install_env=built.env,
-                static_info=built.static,
-                out_dir=out / treatment.name,
                 timeout_s=TIMEOUT_S,
                 on_progress=advance,
             )

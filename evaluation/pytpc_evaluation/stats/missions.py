@@ -14,9 +14,9 @@ from typing import Any
 
 from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError
-from pytpc.ingest.reading import is_converted, read
+from pytpc.ingest.reading import read
 from pytpc.recording.marks import Mark
-from pytpc.recording.mission import RUN_FILE, Recording
+from pytpc.recording.mission import RUN_FILE, Recording, is_converted
 from pytpc_evaluation.treatment import TREATMENT_FILE, Treatment, TreatmentType, load_treatment
 
 UNNAMED = "unnamed"
@@ -33,7 +33,8 @@ class StudyMission:
 
     ``name`` is that of its folder or file. ``treatment`` and ``seed`` are None where nobody wrote
     them down. ``bag`` has the topics that were recorded besides the reports, ``sights`` what a
-    person beside the field sees of the robot; None without one.
+    person beside the field sees of the robot; None without one. ``source`` is the folder or file
+    that it was read from.
     """
 
     name: str
@@ -42,6 +43,7 @@ class StudyMission:
     seed: int | None = None
     bag: Path | None = None
     sights: Path | None = None
+    source: Path | None = None
 
     @property
     def kind(self) -> TreatmentType | None:
@@ -132,6 +134,7 @@ def _load(
         seed=int(seed) if re.fullmatch(r"[0-9]{1,18}", seed) else None,
         bag=_bag(path, run),
         sights=sights if whole and (sights := folder / _SIGHTS_FILE).is_file() else None,
+        source=path,
     )
 
 

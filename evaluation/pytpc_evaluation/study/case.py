@@ -27,6 +27,11 @@ class Case:
     reference: Recording | None = None
     changes: tuple[Change, ...] = ()
 
+    @property
+    def references(self) -> tuple[Recording, ...]:
+        """The good run, if there is one."""
+        return () if self.reference is None else (self.reference,)
+
 
 @dataclass(frozen=True)
 class Verdict:

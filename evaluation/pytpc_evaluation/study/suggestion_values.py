@@ -76,15 +76,15 @@ def _ranked(chain: Chain, out: Path) -> Try:
     if not case.recording.marks:
         return Try("", None, None, None, reason="nobody set a mark")
     order = tpc_reference(case).order
-    found = blame(case.recording, case.static_info, Question(reference=case.reference))
+    found = blame(case.recording, case.static_info, Question(references=case.references))
     if not order or not found.suspects:
         return Try("", None, None, None, reason="nobody is suspected")
     if found.none > found.confidence:
         words = f"none of the parameters comes first: {percent(found.none)}"
         return Try("", None, None, None, reason=f"{words}, {order[0]} {percent(found.confidence)}")
     sources = VARIANTS[chain.variant] or frozenset()
-    reference = case.reference if "reference" in sources else None
-    question = Question(top=1, sources=sources, reference=reference)
+    references = case.references if "reference" in sources else ()
+    question = Question(top=1, sources=sources, references=references)
     (advice,) = advise_blamed(found.only(order[0]), case.recording, case.static_info, question)
     return _try(order[0], _node(case.recording, advice.accused.key), advice.remedy)
 
@@ -100,8 +100,9 @@ def _asked(
 ) -> Remedy:
     static = StaticInfo.load(out / "systems" / chain.system / "static.json")
     sources = VARIANTS[chain.variant] or frozenset()
-    reference = load_recording(out / "reference" / chain.system) if "reference" in sources else None
-    question = Question(sources=sources, reference=reference, flown=flown)
+    beside = "reference" in sources
+    references = (load_recording(out / "reference" / chain.system),) if beside else ()
+    question = Question(sources=sources, references=references, flown=flown)
     return remedy(recording, static, parameter, recording.marks, question)
 
 

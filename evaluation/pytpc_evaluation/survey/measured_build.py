@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pytpc.base.errors import InputError, RunError, TpcError, WorkspaceError
-from pytpc.base.paths import BUILD_TOOLS, cmake_file, installed, require_tools
+from pytpc.base.paths import clang_release, cmake_file, installed, require_tools
 from pytpc.base.wording import plain
 from pytpc.build.fallback import first_error
 from pytpc.static.link_unit import LinkUnit
@@ -167,7 +167,7 @@ def measure(
         MissingToolError: a compiler, colcon or TPC's C++ half is absent.
         TpcError: the folder cannot be written.
     """
-    require_tools(BUILD_TOOLS)
+    require_tools()
     packages = [Package(one.name, one.path, one.build_type) for one in tree.packages]
     if not packages:
         return Measured(Build(0.0, 0.0, 0.0, tree.unreadable))
@@ -231,11 +231,13 @@ def _write_launcher(root: Path) -> Path:
 
 
 def _write_plain_toolchain(root: Path) -> Path:
-    compilers = require_tools(("clang-19", "clang++-19"))
+    release = clang_release()
+    names = (f"clang-{release}", f"clang++-{release}")
+    compilers = require_tools(names)
     path = root / "launch" / "plain.cmake"
     path.write_text(
-        f'set(CMAKE_C_COMPILER "{compilers["clang-19"]}")\n'
-        f'set(CMAKE_CXX_COMPILER "{compilers["clang++-19"]}")\n',
+        f'set(CMAKE_C_COMPILER "{compilers[names[0]]}")\n'
+        f'set(CMAKE_CXX_COMPILER "{compilers[names[1]]}")\n',
         encoding="utf-8",
     )
     return path

@@ -14,6 +14,7 @@ from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.ranking.mark_ranking import outside
 from pytpc.diagnosis.ranking.other_values import diagnose_beside
 from pytpc.diagnosis.ranking.posterior import Decisive, Posterior
+from pytpc.diagnosis.ranking.summarised import with_summarised
 from pytpc.diagnosis.results.suspects import Accused, Blame, Evaluation
 from pytpc.diagnosis.scores.evaluations import KeyRows, LoggedEvaluations
 from pytpc.diagnosis.scores.score_tables import Tpcs
@@ -32,25 +33,30 @@ def blame(recording: Recording, static_info: StaticInfo, question: Question = PL
     Args:
         recording: the mission with its marks.
         static_info: what the analysis found.
-        question: its ``reference`` and ``changes``. The ``types`` ``believe`` and ``doubt`` are the
-            same here: types are never certain. A mark without a report in ``window_s`` before it
-            does not count.
+        question: its ``references``, ``changes`` and ``differences``. The ``types`` ``believe`` and
+            ``doubt`` are the same here: types are never certain. A mark without a report in
+            ``window_s`` before it does not count.
     """
     if question.types == "ignore":
         untyped = tuple(replace(mark, type=None) for mark in recording.marks)
         recording = replace(recording, marks=untyped)
     tpcs = Tpcs.of(static_info)
-    events = recording.events.with_keys(tpcs.keys)
-    log = LoggedEvaluations(events, recording.summaries)
+    log = LoggedEvaluations(recording.events.with_keys(tpcs.keys), recording.summaries)
+    events = with_summarised(recording).with_keys(tpcs.keys)
     beyond = [outside(mark, log, question.window_s) for mark in recording.marks]
     notes = _notes(recording, beyond)
     if not recording.marks or all(beyond) or not len(events):
         return Blame((), 1.0, len(tpcs.names), recording.marks, notes)
     found = diagnose_beside(
-        recording, static_info, reference=question.reference, changes=question.changes
+        recording,
+        static_info,
+        references=question.references,
+        changes=question.changes,
+        differences=question.differences,
     )
     suspects = _suspects(found, static_info, recording.marks, events)
-    made = Blame(suspects, found.none, len(tpcs.names), recording.marks, notes)
+    code = None if question.differences is None else question.differences.code
+    made = Blame(suspects, found.none, len(tpcs.names), recording.marks, notes, code)
     if len(recording.marks) > 1 or made.accused is not None:
         return made
     return replace(
@@ -101,8 +107,8 @@ def _notes(recording: Recording, beyond: Sequence[str]) -> tuple[str, ...]:
     if len(recording.summaries):
         count = int(recording.summaries.count.sum())
         notes.append(
-            f"{many(count, 'evaluation')} came as summaries (policy edges) and are not judged here;"
-            " what the robot waits for may be missed, so look at each mark, too"
+            f"{many(count, 'evaluation')} came as summaries, of which only the extremes and the"
+            " last are judged; TPC_POLICY=every reports them one by one"
         )
     return tuple(notes)
 

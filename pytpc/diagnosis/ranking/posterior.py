@@ -27,6 +27,7 @@ import numpy as np
 from pytpc.base.columns import Floats, Int64s
 from pytpc.diagnosis.ranking.mark_evidence import SHARE, MarkEvidence, mark_evidence, marked
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
+from pytpc.diagnosis.ranking.summarised import with_summarised
 from pytpc.diagnosis.scores.score_tables import Tpcs, parameter_tables, tpc_scores
 from pytpc.diagnosis.scores.summary_scores import LogTables
 from pytpc.recording.marks import Mark
@@ -121,7 +122,7 @@ def diagnose_log(
         weights: what the evidence counts.
     """
     tpcs = Tpcs.of(static_info)
-    streams = ResultStreams.of(recording.events, tpcs)
+    streams = ResultStreams.of(with_summarised(recording), tpcs)
     marks = recording.marks
     if not marks or not streams.streams:
         nobody = np.full(len(tpcs.names), -np.inf)
@@ -164,7 +165,8 @@ def ranked(recording: Recording, tpcs: Tpcs, times_ns: Int64s) -> Floats:
     tables = parameter_tables(
         tpcs, tpc_scores(tpcs, LogTables(events, recording.summaries), times_ns)
     )
-    compared = {tpcs.parameters[code] for code in np.unique(events.key).tolist()}
+    every = with_summarised(recording).with_keys(tpcs.keys)
+    compared = {tpcs.parameters[code] for code in np.unique(every.key).tolist()}
     known = np.array([name in compared for name in tpcs.names], np.bool_)
     found = np.full((2, 1, known.size), -np.inf)
     for row, ranks in enumerate((tables.first.ranks, tables.combined)):

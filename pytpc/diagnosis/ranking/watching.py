@@ -78,7 +78,9 @@ class Watching:
         self._has_new_names = False
         self._bin_ns = max(1, round(window_s * 1e9) // BINS)
         self._tracks: dict[str, _Track] = {}
-        self.reports = 0
+        self.differing: frozenset[str] = frozenset()
+        """Parameters that differ from good runs: they come before all others."""
+        self.evaluations = 0
         self.last_ns: int | None = None
         self.nodes: set[str] = set()
         self.unknown: dict[str, int] = {}
@@ -91,7 +93,7 @@ class Watching:
     def take(self, seen: Seen) -> None:
         """Take in an evaluation; those of unknown comparisons are only counted."""
         self._note(seen.time_ns, seen.node)
-        self.reports += 1
+        self.evaluations += 1
         if self._knows(seen):
             self._add(seen)
 
@@ -117,7 +119,7 @@ class Watching:
     def take_summary(self, summary: Summary) -> None:
         """Take in a summary of many evaluations; its flops arrive as evaluations."""
         self._note(summary.end_ns, summary.node)
-        self.reports += summary.count
+        self.evaluations += summary.count
         if self._knows(summary):
             self._add_summary(summary)
 
@@ -179,16 +181,20 @@ class Watching:
                 self._add(report)
 
     def ranking_at(self, mark: Mark) -> MarkRanking:
-        """The suspects at an instant, as `LiveRanking.ranking_at` gives them."""
+        """The suspects at an instant, by `LiveRanking.ranking_at` and by what differs."""
         if self._has_new_names or self._waiting:
             self._learn()
-        return self._engine.ranking_at(mark)
+        return self._ordered(self._engine.ranking_at(mark))
+
+    def _ordered(self, ranking: MarkRanking) -> MarkRanking:
+        return ranking.with_first(self.differing) if self.differing else ranking
 
     def look(self, now_ns: int, top: int, kinds: Sequence[MarkType | None] = KINDS) -> Look:
         """What to show now: the first ``top`` suspects of each of ``kinds``."""
         if self._has_new_names or self._waiting:
             self._learn()
-        found = self._engine.rankings_at(now_ns, [Mark(now_ns, kind) for kind in kinds])
+        marks = [Mark(now_ns, kind) for kind in kinds]
+        found = map(self._ordered, self._engine.rankings_at(now_ns, marks))
         return self.look_of(dict(zip(kinds, found, strict=True)), now_ns, top)
 
     def look_of(

@@ -1,4 +1,4 @@
-"""What a diagnosis advises for suspected parameters, and its whole answer about a mission."""
+"""What a diagnosis advises for suspected parameters."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import Literal
 
 from pytpc.base.columns import Floats, Int64s
 from pytpc.base.wording import Number
-from pytpc.diagnosis.question import Question, Source
-from pytpc.diagnosis.results.suspects import Accused, Blame, MarkRanking, Suspect
+from pytpc.diagnosis.question import Source
+from pytpc.diagnosis.results.suspects import Accused, Suspect
 from pytpc.diagnosis.thresholds.intervals import Intervals
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark, MarkType
@@ -93,6 +93,8 @@ class WhatIf:
     nobody complained. ``text`` is the sentence to show, ``caveats`` what the replay cannot know.
 
     ``unsure`` is how many more may have another outcome: only the extremes of summaries are known.
+    ``stops`` says that the value answers marks of type I by stopping all that the parameter
+    decides: every evaluation would go the same way, also those that nobody complained about.
     """
 
     parameter: str
@@ -105,6 +107,7 @@ class WhatIf:
     text: str
     caveats: tuple[str, ...]
     unsure: int = 0
+    stops: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,6 +147,11 @@ class BlamedAdvice:
     accused: Accused
     remedy: Remedy
     what_if: WhatIf | None
+
+    @property
+    def stops(self) -> bool:
+        """Whether the value to try would only stop the robot, see `WhatIf`."""
+        return self.what_if is not None and self.what_if.stops
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,46 +200,3 @@ class RankCurves:
     rank1: Floats
     rank2: Floats
     combined: Floats
-
-
-@dataclass(frozen=True, slots=True)
-class SuspectAnswer:
-    """All evidence about one of the first suspects at a mark.
-
-    ``why`` says what its comparison did before the mark. ``others`` is the advice by the other
-    comparisons of its parameter. ``suggested`` is the threshold that the value to try gives; None
-    if it is not a number. ``feasible`` are the thresholds that would do, as (low, high).
-    """
-
-    advice: Advice
-    why: str
-    others: tuple[Advice, ...]
-    suggested: float | None
-    feasible: tuple[tuple[float, float], ...]
-
-
-@dataclass(frozen=True, slots=True)
-class MarkAnswer:
-    """One mark: ``first`` are the first suspects, ``rest`` is the advice for the others."""
-
-    ranking: MarkRanking
-    first: tuple[SuspectAnswer, ...]
-    rest: tuple[Advice, ...]
-
-
-@dataclass(frozen=True, eq=False)
-class MissionAnswer:
-    """The whole diagnosis of one mission, as the report page shows it.
-
-    The ``top`` of its ``question`` is how many suspects of a mark have all evidence. ``blame`` and
-    ``first`` are the verdict of all marks together and the advice for its first suspect; None
-    without marks or suspects. ``curves`` is None if no mark has a suspect. ``warnings`` say what is
-    wrong with the recording.
-    """
-
-    question: Question
-    marks: tuple[MarkAnswer, ...]
-    blame: Blame | None
-    first: BlamedAdvice | None
-    curves: RankCurves | None
-    warnings: tuple[str, ...]

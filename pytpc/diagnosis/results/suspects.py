@@ -6,13 +6,16 @@ are the judgement of all marks together, with probabilities.
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from typing import NamedTuple, TypeVar
 
 from pytpc.base.wording import percent
+from pytpc.diagnosis.results.differences import CodeComparison
 from pytpc.recording.marks import Mark, MarkType
 from pytpc.static.link_unit import Comparison
-from pytpc.static.parameters import same_parameter
+from pytpc.static.parameters import ByParameter, same_parameter
 
 Named = TypeVar("Named", "Suspect", "Accused")
 
@@ -77,6 +80,22 @@ class MarkRanking:
         """The same with the one suspect, at its position; with none where it is not suspected."""
         return replace(self, suspects=_meant(self.suspects, parameter))
 
+    def with_first(self, parameters: Collection[str]) -> MarkRanking:
+        """The same with what these names can mean before all others, each counted anew."""
+        named = ByParameter(self.suspects, lambda one: one.parameter)
+        first = {one.parameter for name in parameters for one in named.meant(name)}
+        groups: tuple[list[Suspect], list[Suspect]] = ([], [])
+        for one in self.suspects:
+            groups[one.parameter not in first].append(one)
+        ordered: list[Suspect] = []
+        for group in groups:
+            before, alike = len(ordered), Counter(one.position for one in group)
+            for place, one in enumerate(group):
+                same = place > 0 and group[place - 1].position == one.position
+                position = ordered[-1].position if same else before + place + 1
+                ordered.append(replace(one, position=position, tied=alike[one.position] > 1))
+        return replace(self, suspects=tuple(ordered))
+
     def suspect_of(self, parameter: str) -> Suspect | None:
         """The most suspicious of what ``parameter`` can mean, see `same_parameter`."""
         same = (s for s in self.suspects if same_parameter(parameter, s.parameter))
@@ -91,6 +110,10 @@ def _meant(suspects: tuple[Named, ...], parameter: str) -> tuple[Named, ...]:
 
 SURE = 0.5
 """A parameter of at least this probability is accused: all others together are less likely."""
+
+
+WORTH = 0.01
+"""Suspects that are less likely are counted in one line of a table for people."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +140,8 @@ class Blame:
     """The judgement of all marks of a mission: the compared parameters, the likeliest first.
 
     ``none`` is the probability that it is none of the ``parameters``. ``notes`` say what keeps the
-    judgement from being surer.
+    judgement from being surer. ``code`` compares the code with that of the good runs; None if it is
+    not known.
     """
 
     suspects: tuple[Accused, ...]
@@ -125,6 +149,7 @@ class Blame:
     parameters: int
     marks: tuple[Mark, ...]
     notes: tuple[str, ...]
+    code: CodeComparison | None = None
 
     @property
     def confidence(self) -> float:
@@ -147,12 +172,21 @@ class Blame:
             return f"blame {name}: {sure}; none of the parameters: {percent(self.none)}"
         if self.none > first.probability:
             return (
-                f"not sure: most likely none of the parameters ({percent(self.none)}; perhaps a"
-                f" fault in the code), then {name} ({sure})"
+                f"not sure: most likely none of the parameters ({percent(self.none)};"
+                f" {self.else_cause}), then {name} ({sure})"
             )
         return (
             f"not sure: {name} is likeliest ({sure}); none of the parameters: {percent(self.none)}"
         )
+
+    @property
+    def else_cause(self) -> str:
+        """What it may be if it is none of the parameters."""
+        if self.code is None:
+            return "perhaps a fault in the code"
+        if self.code.is_same:
+            return f"{self.code.line}, so perhaps something around the robot"
+        return f"perhaps a fault in the code: {self.code.line}"
 
     def only(self, parameter: str) -> Blame:
         """The same with the one suspect, at its position; with none where it is not suspected."""

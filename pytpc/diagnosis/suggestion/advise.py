@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from pytpc.base.wording import Number, show
 from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.results.advice import (
     Advice,
@@ -197,7 +198,7 @@ def with_remedies(
         lists: for each the advice for its first suspects.
         question: its ``window_s``; a good run does not count here.
     """
-    alone = replace(question, reference=None, flown=())
+    alone = replace(question, references=(), flown=())
     marks: dict[tuple[object, ...], list[Mark]] = {}
     for ranking, advice in zip(rankings, lists, strict=True):
         marks.setdefault(_says(ranking.mark, advice), []).append(ranking.mark)
@@ -236,9 +237,18 @@ def _tried(
     typed = [replace(mark, type=kind) for mark in marks]
     about = question.about(advice.declared)
     found = remedy(recording, static_info, advice.suspect.parameter, typed, about)
-    return found, _replayed(
-        recording, static_info, found, replace(question, kind=kind, marks=typed)
-    )
+    asked = replace(question, kind=kind, marks=marks)
+    return _with_effect(found, _replayed(recording, static_info, found, asked))
+
+
+def _with_effect(found: Remedy, then: WhatIf | None) -> tuple[Remedy, WhatIf | None]:
+    """The value to try and its replay; no value if the log alone wants to switch in vain."""
+    is_switch = found.basis == "smallest" and found.direction == "switch"
+    if then is None or not is_switch or then.answered or then.flipped_near or then.unsure:
+        return found, then
+    reason = f"{show(found.value)} would have turned no decision before the marks"
+    none = replace(found, direction=None, value=None, basis=None, text=reason, reason=reason)
+    return none, None
 
 
 def _replayed(
@@ -295,18 +305,44 @@ def advise_blamed(
         about = declared_for(question.declared or (), accused, static_info.source_path(accused.key))
         untyped = [replace(mark, type=None) for mark in blame.marks]
         value = remedy(recording, static_info, name, untyped, question.about(about))
-        value = _as_before(value, question.changes)
+        value = _as_before(value, question)
         kind = value.kind or accused.type
-        typed = [replace(mark, type=kind) for mark in blame.marks]
-        then = _replayed(recording, static_info, value, replace(question, kind=kind, marks=typed))
-        found.append(BlamedAdvice(accused, value, then))
-    return found
+        asked = replace(question, kind=kind, marks=blame.marks)
+        then = _replayed(recording, static_info, value, asked)
+        found.append(BlamedAdvice(accused, *_with_effect(value, then)))
+    return stopping_last(found)
 
 
-def _as_before(found: Remedy, changes: Sequence[Change]) -> Remedy:
+def stopping_last(advice: Sequence[BlamedAdvice]) -> list[BlamedAdvice]:
+    """Of suspects that share a position those come last whose value would stop everything."""
+    return sorted(advice, key=lambda one: (one.accused.position, one.stops))
+
+
+def _as_before(found: Remedy, question: Question) -> Remedy:
     """The remedy with the value that the parameter had before it was changed, if that is known."""
-    for one in changes:
+    if found.basis == "reference":
+        return found
+    for one in question.changes:
         known = math.isfinite(one.old) and one.old != one.new
         if known and same_parameter(one.parameter, found.parameter):
-            return restored(found, one.old, "before", "the value before it was changed")
+            words = "the value before it was changed"
+            if found.current == one.old and _is_decided_by(one, question):
+                # Another node has the present value under the name in the source.
+                way = found.direction if found.direction == "switch" else None
+                found = replace(found, current=_alike(one.new, found.current), direction=way)
+                words = f"the value of {one.parameter} before it was changed"
+            return restored(found, one.old, "before", words)
     return found
+
+
+def _is_decided_by(change: Change, question: Question) -> bool:
+    """Whether the mission decided otherwise than with the old value, in the node of the change."""
+    differing = () if question.differences is None else question.differences.found
+    return any(one.turned for one in differing if one.parameter == change.parameter)
+
+
+def _alike(value: float, other: Number | None) -> Number:
+    """The value as a bool or whole number, as the other one is."""
+    if isinstance(other, bool):
+        return bool(value)
+    return int(value) if isinstance(other, int) and value.is_integer() else value

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 
 from pytpc.base.wording import show
+from pytpc.diagnosis.suggestion.plausible import NO_DOUBT, Doubt, ParameterKind
 from pytpc.diagnosis.thresholds.intervals import Interval, Intervals, intersection, words
 from pytpc.recording.declaration import Declared
 
@@ -19,11 +20,15 @@ _NOTHING = 1e-300
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """A value, its interval of good values, and what kept it from the interval's end."""
+    """A value, its interval of good values, and what kept it from the interval's end.
+
+    ``doubt`` says why a person would not try it, although it is the best of all that would do.
+    """
 
     value: float
     interval: Interval
     limited_by: str
+    doubt: Doubt = NO_DOUBT
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +63,22 @@ class Possible:
         low = self._ends()[0]
         return Decimal(repr(float(current if low is None else low)))
 
+    def toward(self, end: float, current: float) -> float | None:
+        """The value nearest to ``end`` of those between it and the present one, if there is one."""
+        up = end > current
+        limit = self.interval.high if up else self.interval.low
+        end = min(end, limit) if up else max(end, limit)
+        if self.step is not None:
+            grid = self.origin(current)
+            rounding = ROUND_FLOOR if up else ROUND_CEILING
+            count = ((Decimal(repr(end)) - grid) / self.step).to_integral_value(rounding)
+            end = float(grid + count * self.step)
+        elif self.whole:
+            end = float(math.floor(end) if up else math.ceil(end))
+        return (
+            end if (end > current) == up and end != current and self.interval.holds(end) else None
+        )
+
     def words(self) -> str:
         """``declared range 0..1``."""
         low, high = self._ends()
@@ -78,12 +99,18 @@ class Possible:
 
 
 def choose(
-    feasible: Intervals, current: float, possible: Possible, *, up_first: bool = True
+    feasible: Intervals,
+    current: float,
+    possible: Possible,
+    kind: ParameterKind | None = None,
+    *,
+    up_first: bool = True,
 ) -> Choice | str:
     """The value nearest to ``current`` that would do and that the parameter can take.
 
-    The sign changes only if no other interval would do, or the declared range has both signs. If
-    two intervals are as near, ``up_first`` decides. ``current`` is in none of them.
+    One that a person would try goes before all others, by the ``kind`` of the parameter; without
+    it only the present value and the declared range count. If two intervals are as near,
+    ``up_first`` decides. ``current`` is in none of them.
 
     Returns:
         The choice, or why there is none.
@@ -92,11 +119,12 @@ def choose(
     if not allowed:
         name = "no value in the " if possible.declared is not None else "no value of its "
         return f"{name}{possible.words()} would do: {words(feasible)}"
+    kind = kind or ParameterKind(current, possible.interval)
     found = []
     for interval in allowed:
         value = _nearest(interval, current, possible)
         if value is not None:
-            found.append((_order(value, current, possible, up_first), value, interval))
+            found.append((_order(value, current, kind, up_first), value, interval))
     if not found:
         grid = "no whole number" if possible.step is None else f"no step of {possible.step}"
         return f"{grid} would do: {words(allowed)}"
@@ -105,17 +133,19 @@ def choose(
     value = first
     if not possible.whole and possible.step is None:
         value = readable(inside, first, current)
-    return Choice(value, home, _limits(feasible, first, current, possible))
+    limited_by = _limits(feasible, first, current, possible, kind)
+    return Choice(value, home, limited_by, kind.doubt(value))
 
 
 def _order(
-    value: float, current: float, possible: Possible, up_first: bool
-) -> tuple[bool, float, bool]:
-    jumps = value * current < 0 and not possible.is_limited
-    return (jumps, abs(value - current), (value > current) != up_first)
+    value: float, current: float, kind: ParameterKind, up_first: bool
+) -> tuple[int, float, bool]:
+    return (kind.doubt(value).grade, abs(value - current), (value > current) != up_first)
 
 
-def _limits(feasible: Intervals, first: float, current: float, possible: Possible) -> str:
+def _limits(
+    feasible: Intervals, first: float, current: float, possible: Possible, kind: ParameterKind
+) -> str:
     """Why ``first`` is not the smallest change that would do; empty if it is."""
     ends = [one.first() if one.first() > current else one.last() for one in feasible]
     end = min(ends, key=lambda value: abs(value - current))
@@ -123,8 +153,9 @@ def _limits(feasible: Intervals, first: float, current: float, possible: Possibl
         return ""
     if not possible.interval.holds(end):
         return possible.words()
-    if end * current < 0 < first * current:
-        return "sign"
+    passed = kind.doubt(end)
+    if passed.grade > kind.doubt(first).grade:
+        return passed.what
     if possible.step is not None and not _is_on(possible, end, current):
         return f"step {possible.step.normalize():f}"
     return WHOLE if possible.whole and end != round(end) else ""

@@ -30,6 +30,7 @@ from typing import Literal
 import numpy as np
 
 from pytpc.base.columns import Bools, Floats, Int64s
+from pytpc.base.off_scale import off_scale
 from pytpc.diagnosis.suggestion.suggestion_case import EQUALITIES
 from pytpc.diagnosis.thresholds.replay import Track
 from pytpc.diagnosis.thresholds.threshold_sets import outcomes, thresholds_for
@@ -106,7 +107,10 @@ def lasting(
 
 
 def _series(track: Track, end_ns: int) -> _Series:
-    """The finite evaluations up to a time in the busiest node; of summaries both ends."""
+    """The finite evaluations up to a time in the busiest node; of summaries both ends.
+
+    Without those off the scale: no threshold can be meant for them.
+    """
     kept = track.kept.take(track.kept.end_ns <= end_ns)
     low, high = kept.thresh + kept.diff_min, kept.thresh + kept.diff_max
     time_ns = np.concatenate([track.time_ns, kept.begin_ns, kept.end_ns])
@@ -117,6 +121,7 @@ def _series(track: Track, end_ns: int) -> _Series:
     if node.size and np.ptp(node) > 0:
         most = int(np.argmax(np.bincount(node[track.time_ns <= end_ns], minlength=1)))
         good[: node.size] &= node == most
+    good[good] = ~off_scale(cmp[good], thresh[good])
     order = np.argsort(time_ns, kind="stable")
     order = order[good[order]]
     cmp, thresh = cmp[order], thresh[order]

@@ -18,36 +18,42 @@ value from which the log pointed back.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from pytpc.base.columns import Floats
-from pytpc.base.errors import InputError
-from pytpc.base.wording import Number, exact, many, show
+from pytpc.base.wording import Number, exact, many, show, tidy
 from pytpc.diagnosis.question import PLAIN, Question, Source
 from pytpc.diagnosis.results.advice import Basis, Direction, KnownValue, Remedy, Suggestion
-from pytpc.diagnosis.suggestion.choice import choose
+from pytpc.diagnosis.suggestion.known_values import (
+    case_of_track,
+    kind_of,
+    known_values,
+    value_in,
+)
 from pytpc.diagnosis.suggestion.lasting import Lasting, lasting
+from pytpc.diagnosis.suggestion.plausible import (
+    NOBODY,
+    ParameterKind,
+)
 from pytpc.diagnosis.suggestion.smallest_change import At, smallest_change_for_most
 from pytpc.diagnosis.suggestion.suggestion_case import (
     NoneBecauseError,
     SuggestionCase,
-    SuggestionEvidence,
-    case_of,
     refuse,
     shown_current,
     values_for,
 )
+from pytpc.diagnosis.suggestion.wanted_value import Wanted, value_to_try
+from pytpc.diagnosis.suggestion.what_if import spans_before, stops_all
 from pytpc.diagnosis.thresholds.intervals import Interval, Intervals, holds, intersection, words
 from pytpc.diagnosis.thresholds.replay import Track, tracks_of
 from pytpc.diagnosis.thresholds.threshold_sets import thresholds_for
 from pytpc.diagnosis.thresholds.units import NoUnitError
-from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import MARK_TYPES, Mark, MarkType
 from pytpc.recording.mission import Recording
-from pytpc.static.link_unit import Default
 from pytpc.static.static_info import StaticInfo
 
 NAMES: dict[Source, str] = {
@@ -56,25 +62,6 @@ NAMES: dict[Source, str] = {
     "declared": "the declared default",
 }
 """What each kind of evidence is called, the strongest first."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Wanted:
-    """A comparison, the values of the parameter that would last, and those that do the least."""
-
-    track: Track
-    case: SuggestionCase
-    found: Lasting
-    lasting: Intervals
-    least: Intervals
-
-    @property
-    def rises(self) -> bool:
-        """Whether the nearest value that would do is above the present one."""
-        ends = [
-            part.first() if part.first() > self.case.present else part.last() for part in self.least
-        ]
-        return min(ends, key=lambda end: abs(end - self.case.present)) > self.case.present
 
 
 def remedy(
@@ -116,7 +103,7 @@ def _by_log(
     question: Question,
 ) -> Remedy:
     """The remedy in the direction that the log shows; the arguments are those of ``remedy``."""
-    flown, declared = question.flown, question.declaration
+    flown = question.flown
     name, tracks, without = tracks_of(recording.events, recording.summaries, static_info, parameter)
     reason = "; ".join(without) or "none of its comparisons was evaluated"
     for kind, times_ns in _kinds(marks, tracks, question.window_s):
@@ -127,13 +114,15 @@ def _by_log(
             [At(time_ns, kind) for time_ns in times_ns],
             question,
         )
-        wanted = []
+        wanted, refused = [], None
         for track in tracks:
             found = lasting(track, kind, times_ns, question.window_s, len(flown))
             if found is None:
                 continue
             try:
-                wanted.append(_wanted(track, found, static_info, declared, max(times_ns)))
+                case = _case(track, static_info, question, max(times_ns))
+                usual = kind_of(case, recording, static_info, question)
+                wanted.append(_wanted(track, found, case, usual))
             except (NoneBecauseError, NoUnitError) as why:
                 reason = str(why)
         if wanted:
@@ -142,14 +131,20 @@ def _by_log(
             allowed = [
                 one for one in known if one.source in question.sources and one.value not in flown
             ]
-            chosen = _chosen(name, wanted, allowed, flown)
-            if chosen is not None:
+            stops = _stops(tracks, kind, times_ns, question.window_s)
+            try:
+                chosen = _chosen(name, wanted, allowed, flown, stops)
+            except NoneBecauseError as why:
+                chosen, refused = None, str(why)
+            off = chosen is not None and chosen.value == 0 and _switches_off(wanted[0], chosen)
+            if chosen is not None and not (off and smallest[0].value):
                 return replace(chosen, smallest=smallest[0], known=tuple(known))
         # If nothing that lasts is between the values that were tried, this is not either.
         if smallest[0].value is not None and not (wanted and flown):
             return _as_smallest(name, kind, *smallest)
-        reason = smallest[0].reason or reason
-    return Remedy(name, None, None, None, None, reason, reason, None, None, None)
+        reason = refused or smallest[0].reason or reason
+    current = value_in(recording, static_info, name)
+    return Remedy(name, current, None, None, None, reason, reason, None, None, None)
 
 
 def restored(found: Remedy, value: float, basis: Basis, words: str) -> Remedy:
@@ -161,6 +156,9 @@ def restored(found: Remedy, value: float, basis: Basis, words: str) -> Remedy:
     """
     current = found.current
     if current is None or not math.isfinite(value) or value == current:
+        return found
+    value = float(tidy(value))
+    if value == current:
         return found
     number: Number = value
     if isinstance(current, bool):
@@ -203,31 +201,17 @@ def _kinds(
     return [(kind, times[kind]) for kind in order]
 
 
-def _wanted(
-    track: Track,
-    found: Lasting,
-    static_info: StaticInfo,
-    declared: Declared | None,
-    end_ns: int,
-) -> _Wanted:
-    comparison = track.comparison
-    refuse(comparison, static_info.unit_of(comparison.key))
-    case = _case(track, _thresholds(track, end_ns), static_info, declared)
+def _case(track: Track, static_info: StaticInfo, question: Question, end_ns: int) -> SuggestionCase:
+    refuse(track.comparison, static_info.unit_of(track.comparison.key))
+    return case_of_track(track, _thresholds(track, end_ns), static_info, question.declaration)
+
+
+def _wanted(track: Track, found: Lasting, case: SuggestionCase, kind: ParameterKind) -> Wanted:
     edges = [
-        values_for(case, thresholds_for(comparison.relation, edge, found.outcome))
+        values_for(case, thresholds_for(case.relation, edge, found.outcome))
         for edge in (found.edge, found.least)
     ]
-    return _Wanted(track, case, found, edges[0], edges[1])
-
-
-def _case(
-    track: Track, seen: Floats, static_info: StaticInfo, declared: Declared | None
-) -> SuggestionCase:
-    """The case of a comparison whose thresholds were ``seen``; see `case_of`."""
-    nothing = np.zeros(0)
-    evidence = SuggestionEvidence(nothing, nothing, float(seen[-1]), seen, bool(len(track.kept)))
-    unit = static_info.unit_of(track.comparison.key)
-    return case_of(track.comparison, unit, evidence, declared)
+    return Wanted(track, case, found, edges[0], edges[1], kind)
 
 
 def _thresholds(track: Track, end_ns: int) -> Floats:
@@ -238,10 +222,31 @@ def _thresholds(track: Track, end_ns: int) -> Floats:
     return thresh[order[time_ns[order] <= end_ns]]
 
 
+def _stops(
+    tracks: Sequence[Track], kind: MarkType, times_ns: Sequence[int], window_s: float
+) -> Callable[[float], bool]:
+    """Whether a value would answer marks of type I by stopping all that the parameter decides."""
+    near = spans_before(times_ns, window_s)
+    return lambda value: kind == "I" and stops_all(tracks, value, near)
+
+
+def _switches_off(wanted: Wanted, found: Remedy) -> bool:
+    """Whether 0 is suggested by the log alone, and often switches such a parameter off."""
+    return found.basis not in NAMES and wanted.kind.doubt(0.0).what == "zero"
+
+
 def _chosen(
-    name: str, wanted: Sequence[_Wanted], known: Sequence[KnownValue], flown: Sequence[float]
+    name: str,
+    wanted: Sequence[Wanted],
+    known: Sequence[KnownValue],
+    flown: Sequence[float],
+    stops: Callable[[float], bool],
 ) -> Remedy | None:
-    """The remedy by the nearest comparison, and by others that want the same direction."""
+    """The remedy by the nearest comparison, and by others that want the same direction.
+
+    Raises:
+        NoneBecauseError: only a value that nobody would try would do.
+    """
     first = wanted[0]
     case, rises = first.case, first.rises
     lasts, against = first.lasting, False
@@ -255,12 +260,19 @@ def _chosen(
     least = intersection(first.least, side) or first.least
     lasts = intersection(lasts, side) or lasts
     within = _bounds(case.present, rises, flown)
-    value, basis = _value(replace(first, lasting=lasts, least=least), known, within)
+    asked = replace(first, lasting=lasts, least=least)
+    value, basis, doubt = value_to_try(asked, known, within, stops)
     if value is None:
+        if doubt.grade == NOBODY:
+            raise NoneBecauseError(f"{doubt.text}: {words(least)}")
         return None
     direction: Direction = "raise" if value > case.present else "lower"
     number = case.number(value)
     why = _why(first.found, basis, lasts, least, len(flown))
+    if basis in {"lasting", "growth"} and not holds(lasts, value):
+        why = f"{doubt.text or 'one order of magnitude'}; to last it would be {why}"
+    elif doubt.words:
+        why += f"; this is {doubt.words.rstrip(',')}"
     if against:
         why += "; another comparison of it would want the other direction"
     text = f"{direction} {name} from {show(shown_current(case))} to {exact(number)} ({why})"
@@ -276,43 +288,6 @@ def _bounds(present: float, rises: bool, flown: Sequence[float]) -> Interval:
     if rises:
         return Interval(present, min(beyond, default=math.inf))
     return Interval(max(beyond, default=-math.inf), present)
-
-
-def _value(
-    wanted: _Wanted, known: Sequence[KnownValue], within: Interval
-) -> tuple[float | None, Basis]:
-    """The value inside ``within`` with the best evidence, if there is one, and which evidence."""
-    case, found, lasts, least = wanted.case, wanted.found, wanted.lasting, wanted.least
-    possible = case.possible
-    for one in known:
-        anywhere = found.ground == "growth"
-        if within.holds(one.value) and holds(least if anywhere else lasts, one.value):
-            return one.value, one.source
-    chosen = choose(lasts, case.present, possible, up_first=found.up)
-    if isinstance(chosen, str):
-        # Nothing that lasts is in the parameter's range: take the end of the range, if that helps.
-        ends = (possible.interval.high, possible.interval.low)
-        beyond = [end for end in ends if math.isfinite(end) and holds(least, end)]
-        if not beyond:
-            return None, "lasting"
-        value = min(beyond, key=lambda end: abs(end - case.present))
-    else:
-        value = chosen.value
-    if not within.holds(value):
-        between = _between(within)
-        value = float(round(between)) if possible.whole else between
-        return (value, "between") if within.holds(value) else (None, "between")
-    return value, "growth" if found.ground == "growth" else "lasting"
-
-
-def _between(within: Interval) -> float:
-    """The geometric mean of two values of one sign, else the arithmetic one; three digits."""
-    low, high = within.low, within.high
-    mean = (low + high) / 2
-    if low * high > 0:
-        mean = math.copysign(math.sqrt(low * high), low)
-    short = float(f"{mean:.3g}")
-    return short if within.holds(short) else mean
 
 
 def _why(found: Lasting, basis: Basis, lasts: Intervals, least: Intervals, tries: int) -> str:
@@ -341,50 +316,3 @@ def _as_smallest(name: str, kind: MarkType, found: Suggestion, key: str | None) 
         name, found.current, found.direction, found.value, "smallest", found.text, None, kind, key,
         found,
     )  # fmt: skip
-
-
-def known_values(
-    case: SuggestionCase, static_info: StaticInfo, parameter: str, reference: Recording | None
-) -> list[KnownValue]:
-    """The known good values, the strongest evidence first.
-
-    The value of a good run has worked; a default is the author's choice; a declared default may be
-    meant for other robots.
-
-    Args:
-        case: the parameter at one of its comparisons.
-        static_info: what the analysis found; it holds for the good run, too.
-        parameter: its name in the source.
-        reference: a good run.
-    """
-    found: list[KnownValue] = []
-    flown = None if reference is None else value_in(reference, static_info, parameter)
-    if flown is not None:
-        found.append(KnownValue("reference", float(flown)))
-    declared = case.possible.declared
-    defaults: list[tuple[Source, Default]] = [
-        ("default", case.comparison.default),
-        ("declared", None if declared is None else declared.default),
-    ]
-    for source, value in defaults:
-        if value is not None and not isinstance(value, str):
-            found.append(KnownValue(source, float(value)))
-    return found
-
-
-def value_in(recording: Recording, static_info: StaticInfo, parameter: str) -> Number | None:
-    """The last value of a parameter in a mission; None if the log does not say."""
-    try:
-        _, tracks, _ = tracks_of(recording.events, recording.summaries, static_info, parameter)
-    except InputError:
-        return None
-    for track in tracks:
-        seen = np.concatenate([track.kept.thresh, track.thresh])
-        seen = seen[np.isfinite(seen)]
-        if not seen.size:
-            continue
-        try:
-            return shown_current(_case(track, seen, static_info, None))
-        except (NoneBecauseError, NoUnitError):
-            continue
-    return None

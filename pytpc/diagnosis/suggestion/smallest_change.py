@@ -21,6 +21,10 @@ from pytpc.base.wording import Number, exact, show
 from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.results.advice import Direction, Suggestion
 from pytpc.diagnosis.suggestion.choice import WHOLE, Choice, choose
+from pytpc.diagnosis.suggestion.kinds_by_name import is_check
+from pytpc.diagnosis.suggestion.known_values import kind_of
+from pytpc.diagnosis.suggestion.overruled import overruling
+from pytpc.diagnosis.suggestion.plausible import NOBODY, ParameterKind
 from pytpc.diagnosis.suggestion.suggestion_case import (
     EQUALITIES,
     NoneBecauseError,
@@ -73,7 +77,8 @@ def smallest_change(
         static_info: what the analysis found.
         comparison: the TPC, one of ``static_info``.
         at: the mark.
-        question: its ``window_s``; ``declared`` has at most the one of this parameter.
+        question: its ``window_s``, and its ``sources`` and ``reference`` for what is usual;
+            ``declared`` has at most the one of this parameter.
     """
     unit, kind = static_info.unit_of(comparison.key), at.kind
     declared = question.declaration
@@ -85,11 +90,14 @@ def smallest_change(
         case = case_of(comparison, unit, evidence, declared)
         current = shown_current(case)
         if comparison.relation == "flag":
+            if kind == "II":
+                _refuse_overruled(case, recording, static_info, at, question)
             return _switch(case, kind)
         if is_truth(case) and comparison.relation in EQUALITIES and kind == "II":
             return _switched(case, not case.threshold)
         feasible = values_for(case, _first_type(case) if kind == "I" else _second_type(case))
-        return replace(_chosen(case, feasible, kind), feasible=feasible)
+        usual = kind_of(case, recording, static_info, question)
+        return replace(_chosen(case, feasible, kind, usual), feasible=feasible)
     except (NoneBecauseError, NoUnitError) as why:
         reason = str(why)
         name = parameter_name(comparison)
@@ -175,7 +183,9 @@ def _still(case: SuggestionCase) -> tuple[Bools, Floats]:
     return went[same], cmps[same]
 
 
-def _chosen(case: SuggestionCase, feasible: Intervals, kind: MarkType) -> Suggestion:
+def _chosen(
+    case: SuggestionCase, feasible: Intervals, kind: MarkType, usual: ParameterKind
+) -> Suggestion:
     declared = case.possible.declared
     if declared is not None and declared.choices:
         return _choice_of(case, feasible, declared)
@@ -185,9 +195,11 @@ def _chosen(case: SuggestionCase, feasible: Intervals, kind: MarkType) -> Sugges
     up_first = True
     if kind == "II" and case.relation not in EQUALITIES:
         up_first = _turns_upwards(case)
-    found = choose(feasible, case.present, case.possible, up_first=up_first)
+    found = choose(feasible, case.present, case.possible, usual, up_first=up_first)
     if isinstance(found, str):
         raise NoneBecauseError(found)
+    if found.doubt.grade == NOBODY:
+        raise NoneBecauseError(f"{found.doubt.text}: {words((found.interval,))}")
     return _sentence(case, found)
 
 
@@ -268,9 +280,36 @@ def _switch(case: SuggestionCase, kind: MarkType) -> Suggestion:
     return _switched(case, case.number(value))
 
 
+def _refuse_overruled(
+    case: SuggestionCase,
+    recording: Recording,
+    static_info: StaticInfo,
+    at: At,
+    question: Question,
+) -> None:
+    """Refuse to switch a flag that would not have decided its condition otherwise.
+
+    Raises:
+        NoneBecauseError: another comparison decided it.
+    """
+    span_ns = (at.time_ns - round(question.window_s * 1e9), at.time_ns)
+    is_on = bool(case.threshold)
+    other = overruling(recording, static_info, case.comparison, is_on, span_ns)
+    if other is not None:
+        said = "false" if is_on else "true"
+        raise NoneBecauseError(
+            f"switching it would have turned nothing: the comparison with {parameter_name(other)}"
+            f" in the same condition was {said} before the mark"
+        )
+
+
 def _switched(case: SuggestionCase, value: Number) -> Suggestion:
     source, current = parameter_name(case.comparison), shown_current(case)
     text = f"switch {source} from {show(current)} to {show(value)}"
+    if not value and not isinstance(value, bool):
+        text += " (only 0 would have prevented it, which often switches a check off)"
+    elif not value and is_check(source):
+        text += " (only this would have prevented it; it switches the check off)"
     feasible = (Interval.point(float(value)),)
     return Suggestion(source, current, "switch", value, float(value), True, text, None, feasible)
 
@@ -289,6 +328,8 @@ def _sentence(case: SuggestionCase, found: Choice) -> Suggestion:
     text = f"{direction} {source} from {show(case.current)} to {exact(value)} ({words((inside,))})"
     if found.limited_by not in {"", WHOLE}:
         text = f"{text[:-1]}; {found.limited_by})"
+    if found.doubt.text:
+        text = f"{text[:-1]}; {found.doubt.text})"
     return Suggestion(
         source, case.current, direction, value, boundary, inclusive, text, None,
         limited_by=found.limited_by,

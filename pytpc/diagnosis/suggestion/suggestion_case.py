@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pytpc.base.columns import Floats, Int64s
-from pytpc.base.wording import Number, show
+from pytpc.base.wording import Number, show, tidy
 from pytpc.diagnosis.suggestion.choice import Possible
 from pytpc.diagnosis.thresholds.intervals import Interval, Intervals, holds, intersection
 from pytpc.diagnosis.thresholds.units import (
@@ -80,8 +80,8 @@ class SuggestionCase:
 
     @property
     def current(self) -> Number:
-        """The parameter's value as a user sees it."""
-        return self.number(self.present)
+        """The parameter's value as a user wrote it."""
+        return tidy(self.number(self.present))
 
     def number(self, value: float) -> Number:
         """The value, as an int if the parameter takes whole numbers only."""

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from pytpc.base.columns import Bools, Int64s
-from pytpc.base.wording import Number, exact, many
+from pytpc.base.wording import Number, exact, listed, many
 from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.results.advice import WhatIf
 from pytpc.diagnosis.thresholds.replay import Track, tracks_of
@@ -21,6 +22,8 @@ CLOSED_LOOP = (
     "the robot would have gone on differently from the first decision that changes; what came after"
     " it is replayed as it was logged"
 )
+
+_NAMED = 2
 
 
 def what_if(
@@ -46,35 +49,54 @@ def what_if(
     kind, window_s = question.kind, question.window_s
     name, tracks, without = tracks_of(recording.events, recording.summaries, static_info, parameter)
     asked = _asked(recording, question)
-    near = _spans([*recording.marks, *asked], window_s)
+    near = spans_before([mark.time_ns for mark in (*recording.marks, *asked)], window_s)
     answered = sum(_answers(tracks, value, mark, kind or mark.type, window_s) for mark in asked)
-    flipped_near = flipped = unsure = 0
-    for track in tracks:
-        threshold = track.threshold(value)
-        turned = track.turned(threshold) & track.own
-        inside = _within(track.time_ns, track.time_ns, near)
-        beside = _within(track.kept.begin_ns, track.kept.end_ns, near)
-        least, most = track.turned_kept(np.ones_like(beside), threshold)
-        flipped_near += int((turned & inside).sum()) + track.turned_kept(beside, threshold)[0]
-        flipped += int(turned.sum()) + least
-        unsure += most - least
+    counted = [count_turned(track, value, near) for track in tracks]
+    flipped_near = sum(one.near for one in counted)
     result = WhatIf(
         parameter=name,
         value=value,
         marks=len(asked),
         answered=answered,
-        evaluations=sum(int(track.own.sum() + track.kept.count.sum()) for track in tracks),
+        evaluations=sum(one.evaluations for one in counted),
         flipped_near=flipped_near,
-        flipped_away=flipped - flipped_near,
+        flipped_away=sum(one.turned for one in counted) - flipped_near,
         text="",
         caveats=(
             *_caveats(tracks, without, recording),
             *_long_before(tracks, asked, kind, window_s),
         ),
-        unsure=unsure,
+        unsure=sum(one.unsure for one in counted),
+        stops=kind == "I" and stops_all(tracks, value, near),
     )
     mixed = any(mark.type != kind for mark in asked)
-    return replace(result, text=_sentence(result, kind, mixed=mixed))
+    places = sorted({f"{track.comparison.file}:{track.comparison.lineno}" for track in tracks})
+    return replace(result, text=_sentence(result, kind, places, mixed=mixed))
+
+
+class Turned(NamedTuple):
+    """How many evaluations of a track would turn, how many near to marks, and perhaps ``unsure``
+    more."""
+
+    evaluations: int
+    turned: int
+    near: int
+    unsure: int
+
+
+def count_turned(track: Track, value: Number, spans: Int64s) -> Turned:
+    """What another value would turn; ``spans`` int64[s, 2] are the windows before the marks."""
+    threshold = track.threshold(value)
+    turned = track.turned(threshold) & track.own
+    inside = within(track.time_ns, track.time_ns, spans)
+    beside = within(track.kept.begin_ns, track.kept.end_ns, spans)
+    least, most = track.turned_kept(np.ones_like(beside), threshold)
+    return Turned(
+        int(track.own.sum() + track.kept.count.sum()),
+        int(turned.sum()) + least,
+        int((turned & inside).sum()) + track.turned_kept(beside, threshold)[0],
+        most - least,
+    )
 
 
 def _asked(recording: Recording, question: Question) -> tuple[Mark, ...]:
@@ -134,19 +156,35 @@ def _turns(tracks: Sequence[Track], value: Number, mark_ns: int, window_s: float
     return False
 
 
-def _spans(marks: Sequence[Mark], window_s: float) -> Int64s:
+def spans_before(marks_ns: Sequence[int], window_s: float) -> Int64s:
     """int64[s, 2]: the windows before the marks, joined, in ascending order."""
     spans: list[list[int]] = []
-    for mark in sorted(marks, key=lambda one: one.time_ns):
-        begin = mark.time_ns - round(window_s * 1e9)
+    for time_ns in sorted(marks_ns):
+        begin = time_ns - round(window_s * 1e9)
         if spans and begin <= spans[-1][1]:
-            spans[-1][1] = mark.time_ns
+            spans[-1][1] = time_ns
         else:
-            spans.append([begin, mark.time_ns])
+            spans.append([begin, time_ns])
     return np.array(spans, dtype=np.int64).reshape(-1, 2)
 
 
-def _within(begins: Int64s, ends: Int64s, spans: Int64s) -> Bools:
+def stops_all(tracks: Sequence[Track], value: Number, near: Int64s) -> bool:
+    """Whether with a value all evaluations would go the same way, also where nobody complained.
+
+    ``near`` are the windows before the marks. If all that turns is in them, only what was wrong
+    goes away.
+    """
+    ways = [track.ways(track.threshold(value)) for track in tracks]
+    if not any(before > 1 for before, _ in ways) or any(after > 1 for _, after in ways):
+        return False
+    return any(
+        (track.turned(threshold) & ~within(track.time_ns, track.time_ns, near)).any()
+        or track.turned_kept(~within(track.kept.begin_ns, track.kept.end_ns, near), threshold)[0]
+        for track, threshold in ((track, track.threshold(value)) for track in tracks)
+    )
+
+
+def within(begins: Int64s, ends: Int64s, spans: Int64s) -> Bools:
     """bool[n]: which of them touch one of the spans."""
     if not spans.size:
         return np.zeros(begins.size, dtype=np.bool_)
@@ -204,7 +242,7 @@ def _is_switch(track: Track) -> bool:
     return bool(np.any(track.res != (track.thresh != 0)) or np.any(kept.res != (kept.thresh != 0)))
 
 
-def _sentence(found: WhatIf, kind: MarkType | None, *, mixed: bool) -> str:
+def _sentence(found: WhatIf, kind: MarkType | None, places: Sequence[str], *, mixed: bool) -> str:
     """What to show: ``0.0527 answers 4 of 4 marks of type II; away from marks it turns ...``.
 
     ``mixed`` marks are not all of ``kind``, so the sentence does not name the type.
@@ -219,4 +257,10 @@ def _sentence(found: WhatIf, kind: MarkType | None, *, mixed: bool) -> str:
     if not found.marks:
         marks = f"is replayed without a mark{of}"
     more = f", perhaps {found.unsure:,} more" if found.unsure else ""
-    return f"{exact(found.value)} {marks}; away from marks it turns {away}{percent}{more}"
+    said = f"{exact(found.value)} {marks}; away from marks it turns {away}{percent}{more}"
+    if found.stops:
+        said += (
+            f"; it would stop what {listed(places, _NAMED)} decides altogether: all"
+            f" {many(found.evaluations, 'evaluation')} would go the same way"
+        )
+    return said

@@ -10,19 +10,19 @@ import numpy as np
 
 from pytpc.base.wording import many, show
 from pytpc.diagnosis.question import Question
-from pytpc.diagnosis.ranking.blame import blame
-from pytpc.diagnosis.results.advice import (
-    Advice,
+from pytpc.diagnosis.results.advice import Advice, RankCurves, Remedy, Suggestion
+from pytpc.diagnosis.results.diagnosis import Diagnosis
+from pytpc.diagnosis.results.mission_answer import (
+    LeadAnswer,
     MarkAnswer,
     MissionAnswer,
-    RankCurves,
-    Remedy,
-    Suggestion,
+    Spans,
     SuspectAnswer,
 )
-from pytpc.diagnosis.results.suspects import MarkRanking, Suspect
+from pytpc.diagnosis.results.suspects import Accused, MarkRanking, Suspect
 from pytpc.diagnosis.scores.score_tables import STEP_S, rank_curves
-from pytpc.diagnosis.suggestion.advise import advise, advise_blamed, alternatives, with_remedies
+from pytpc.diagnosis.suggestion.advise import advise, alternatives, declared_for
+from pytpc.diagnosis.suggestion.smallest_change import At, smallest_change
 from pytpc.diagnosis.thresholds.units import threshold_of
 from pytpc.recording.events import Floats
 from pytpc.recording.faults import faults_of
@@ -41,6 +41,7 @@ def answer_mission(
     static_info: StaticInfo,
     rankings: Sequence[MarkRanking],
     question: Question,
+    found: Diagnosis | None,
 ) -> MissionAnswer:
     """Everything that the report page says about a mission.
 
@@ -49,13 +50,12 @@ def answer_mission(
         static_info: what the analysis found.
         rankings: the suspects at each mark, as ``rank_marks`` answers the question.
         question: its ``top`` is how many suspects of a mark get all the evidence.
+        found: what all marks say together; None without a mark.
     """
     every = [
         advise(recording, static_info, ranking, replace(question, top=len(ranking.suspects)))
         for ranking in rankings
     ]
-    firsts = [advice[: question.top] for advice in every]
-    tried = with_remedies(recording, static_info, rankings, firsts, question)
 
     def looked_at(ranking: MarkRanking, advice: Advice) -> SuspectAnswer:
         suspect = advice.suspect
@@ -63,29 +63,73 @@ def answer_mission(
             advice,
             why(recording, suspect, ranking.mark, question.window_s),
             tuple(alternatives(recording, static_info, ranking, suspect, question)),
-            _suggested_threshold(suspect.comparison, advice.told),
+            _suggested_threshold(suspect.comparison, advice.suggestion),
             _feasible_thresholds(suspect.comparison, advice.suggestion),
         )
 
-    found = blame(recording, static_info, question) if rankings else None
-    first = []
-    if found is not None:
-        first = advise_blamed(found, recording, static_info, replace(question, top=1))
+    lead = None if found is None else _lead(recording, static_info, rankings, found, question)
     return MissionAnswer(
         question=question,
         marks=tuple(
             MarkAnswer(
                 ranking,
-                tuple(looked_at(ranking, one) for one in own),
+                tuple(looked_at(ranking, one) for one in advice[: question.top]),
                 tuple(advice[question.top :]),
             )
-            for ranking, own, advice in zip(rankings, tried, every, strict=True)
+            for ranking, advice in zip(rankings, every, strict=True)
         ),
-        blame=found,
-        first=first[0] if first else None,
+        diagnosis=found,
         curves=_curves(recording, static_info, rankings, question),
         warnings=tuple(faults_of(recording, static_info)),
+        lead=lead,
     )
+
+
+def _lead(
+    recording: Recording,
+    static_info: StaticInfo,
+    rankings: Sequence[MarkRanking],
+    found: Diagnosis,
+    question: Question,
+) -> LeadAnswer | None:
+    """The evidence for the first suspect that the diagnosis shows."""
+    if not found.shown:
+        return None
+    advised = found.shown[0]
+    told, accused = advised.remedy, advised.accused
+    if told.key is not None and told.key in static_info.comparisons:
+        comparison = static_info.comparisons[told.key]
+        kind = told.kind or accused.type
+        accused = replace(accused, key=told.key, comparison=comparison, type=kind)
+    place = _most_telling(rankings, accused)
+    mark = rankings[place].mark
+    about = declared_for(question.declared or (), accused, static_info.source_path(accused.key))
+    at = At(mark.time_ns, accused.type)
+    least = smallest_change(recording, static_info, accused.comparison, at, question.about(about))
+    return LeadAnswer(
+        advised,
+        accused,
+        mark,
+        place + 1,
+        why(recording, accused, mark, question.window_s),
+        _suggested_threshold(accused.comparison, told),
+        _feasible_thresholds(accused.comparison, least),
+        about,
+    )
+
+
+def _most_telling(rankings: Sequence[MarkRanking], accused: Accused) -> int:
+    """At which mark this parameter is most suspicious, by this comparison if possible."""
+
+    def order(place: int) -> tuple[bool, bool, bool, int, int]:
+        ranking = rankings[place]
+        suspect = ranking.suspect_of(accused.parameter)
+        if suspect is None:
+            return (True, True, not ranking.enough, 0, -place)
+        key, kind = suspect.key == accused.key, suspect.type == accused.type
+        return (not kind, not key, not ranking.enough, suspect.position, place)
+
+    return min(range(len(rankings)), key=order)
 
 
 def _curves(
@@ -108,9 +152,7 @@ def _suggested_threshold(found: Comparison, told: Suggestion | Remedy) -> float 
     return threshold_of(found, float(told.value))
 
 
-def _feasible_thresholds(
-    found: Comparison, suggestion: Suggestion
-) -> tuple[tuple[float, float], ...]:
+def _feasible_thresholds(found: Comparison, suggestion: Suggestion) -> Spans:
     """The values that would do, as thresholds; an open end is infinite."""
     if found.relation == "flag":
         return ()
@@ -128,7 +170,7 @@ def _feasible_thresholds(
     return tuple(spans)
 
 
-def why(recording: Recording, suspect: Suspect, mark: Mark, window_s: float) -> str:
+def why(recording: Recording, suspect: Suspect | Accused, mark: Mark, window_s: float) -> str:
     """What the suspect's comparison did before the mark, in one sentence; empty if it did nothing.
 
     Type I: its last flop. Type II: its results in the window of ``window_s`` seconds, and the
@@ -139,7 +181,7 @@ def why(recording: Recording, suspect: Suspect, mark: Mark, window_s: float) -> 
     return _window(recording, suspect, mark, window_s)
 
 
-def _last_flop(recording: Recording, suspect: Suspect, mark: Mark) -> str:
+def _last_flop(recording: Recording, suspect: Suspect | Accused, mark: Mark) -> str:
     events = recording.events
     rows = events.rows_of(suspect.key)
     flops = rows[events.flop[rows] & (events.time_ns[rows] <= mark.time_ns)]
@@ -155,7 +197,7 @@ def _last_flop(recording: Recording, suspect: Suspect, mark: Mark) -> str:
     return f"{text}, with {show(cmp)} against {show(thresh)}."
 
 
-def _window(recording: Recording, suspect: Suspect, mark: Mark, window_s: float) -> str:
+def _window(recording: Recording, suspect: Suspect | Accused, mark: Mark, window_s: float) -> str:
     begin = f"In the {window_s:g} s before the mark it was"
     begin_ns = mark.time_ns - round(window_s * 1e9)
     events = recording.events

@@ -10,6 +10,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
 
+from pytpc.base.wording import show
+
 
 @dataclass(frozen=True, slots=True)
 class Interval:
@@ -67,7 +69,7 @@ class Interval:
         >>> Interval.above(3).words(), Interval(1, 2, True, False).words()
         ('above 3', 'from 1 to below 2')
         """
-        low, high = f"{self.low:.6g}", f"{self.high:.6g}"
+        low, high = show(self.low), show(self.high)
         if self.low == self.high:
             return f"exactly {low}"
         if math.isinf(self.low) and math.isinf(self.high):

@@ -18,7 +18,7 @@ from pytpc.recording.events import Events
 from pytpc.recording.summaries import Summaries
 from pytpc.static.arithmetic import Tree, evaluate
 from pytpc.static.link_unit import Comparison
-from pytpc.static.parameters import parameter_name, same_parameter
+from pytpc.static.parameters import meant_by, parameter_name
 from pytpc.static.static_info import StaticInfo
 
 _ALL = slice(None)
@@ -60,6 +60,23 @@ class Track:
         cmp, thresh = self.cmp[rows], self.thresh[rows]
         before = outcomes(relation, cmp, thresh)
         return np.asarray(before != outcomes(relation, cmp, threshold), dtype=np.bool_)
+
+    def ways(self, threshold: float) -> tuple[int, int]:
+        """How many different outcomes the log has, and how many with ``threshold``."""
+        relation, kept = self.comparison.relation, self.kept
+        before = self.res if relation == "flag" else outcomes(relation, self.cmp, self.thresh)
+        after = before ^ self.turned(threshold)
+        if relation == "flag":
+            ends = [kept.low != 0, kept.high != 0]
+            then = [np.full(len(kept), threshold != 0)]
+        else:
+            diffs = (kept.diff_min, kept.diff_max)
+            ends = [outcomes(relation, diff, 0.0) for diff in diffs]
+            then = [outcomes(relation, kept.thresh + diff, threshold) for diff in diffs]
+        return (
+            np.unique(np.concatenate([before, *ends])).size,
+            np.unique(np.concatenate([after, *then])).size,
+        )
 
     def _flag(self, rows: slice | Int64s, threshold: float) -> Bools:
         """Outcomes of a flag; for a switch, those of the log at this value."""
@@ -160,7 +177,7 @@ def _name_of(static_info: StaticInfo, parameter: str) -> str:
     names = sorted({parameter_name(found) for found in static_info.thresholds.values()})
     if parameter in names:
         return parameter
-    same = [name for name in names if same_parameter(parameter, name)]
+    same = meant_by(parameter, names)
     if len(same) == 1:
         return same[0]
     if same:

@@ -6,17 +6,12 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from markupsafe import Markup
-
 from pytpc.base.wording import exact, show
-from pytpc.diagnosis.results.advice import Advice, Suggestion, SuspectAnswer, WhatIf
-from pytpc.diagnosis.results.suspects import Suspect
-from pytpc.present.as_json import finite
-from pytpc.present.page.payload import series_of
-from pytpc.present.page.plots import EvidenceStyle, evidence_svg, value_span
+from pytpc.diagnosis.results.advice import Advice, Suggestion, WhatIf
+from pytpc.diagnosis.results.mission_answer import SuspectAnswer
+from pytpc.present.page.figure import FigureView, PageFigures, Wanted
 from pytpc.present.page.reported_mission import ReportedMission
-from pytpc.present.page.series import PlotData, plot_data
-from pytpc.present.page.source import LONGEST_LINE, Line, StepView, source_lines, way_of
+from pytpc.present.page.source import Line, StepView, source_lines, way_of
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark
 from pytpc.static.link_unit import Comparison
@@ -29,45 +24,27 @@ class SuspectView:
 
     position: str
     parameter: str
-    culprit: bool
+    changed: bool
     current: str
     value: str
     direction: str
     suggestion: str
-    impossible: bool
     bound: str
     limited: str
     place: str
-    condition: str
     relation: str
     type: str
     score: str
-    scored: str
     rank: str
     order: Mapping[str, float | int | str]
 
 
 @dataclass(frozen=True)
-class LeadView:
-    """What to do with a suspect: the value to try, or the reason why there is none.
-
-    ``smallest`` is the smallest change at this mark in words, if it is another value.
-    """
-
-    direction: str
-    current: str
-    value: str
-    reason: str
-    smallest: str
-
-
-@dataclass(frozen=True)
 class CardView:
-    """A suspect at a mark with its evidence; ``ident`` names its figure."""
+    """A suspect at a mark with its evidence; ``ident`` names it and its figure."""
 
     ident: str
     row: SuspectView
-    lead: LeadView
     why: str
     compared: str
     threshold: str
@@ -77,10 +54,8 @@ class CardView:
     unit: str
     exposed: str
     others: int
-    limit_name: str
-    kept: bool
-    plot: Markup
-    alone: str
+    distance: int
+    figure: FigureView
     source: list[Line]
     source_note: str
     way: list[StepView]
@@ -91,25 +66,8 @@ class CardView:
     alternatives: list[tuple[str, str]]
 
 
-class PageFigures:
-    """The data of one mission's figures for the page's script: cards, and series by TPC."""
-
-    def __init__(self, mission: ReportedMission) -> None:
-        self._mission = mission
-        self._numbers: dict[str, int] = {}
-        self.series: list[dict[str, object]] = []
-        self.cards: dict[str, dict[str, object]] = {}
-
-    def add(self, ident: str, key: str, card: dict[str, object]) -> None:
-        """Add a card's figure, and the evaluations of its TPC if they are new."""
-        if key not in self._numbers:
-            self._numbers[key] = len(self.series)
-            self.series.append(series_of(self._mission.recording, key))
-        self.cards[ident] = {**card, "series": self._numbers[key]}
-
-
-def row_view(mission: ReportedMission, advice: Advice, *, mixed: bool = False) -> SuspectView:
-    """The row of a suspect; ``mixed`` says that the ranking has scores of both types."""
+def row_view(mission: ReportedMission, advice: Advice) -> SuspectView:
+    """The row of a suspect."""
     suspect, suggestion = advice.suspect, advice.suggestion
     found = suspect.comparison
     current = suggestion.current if suggestion.current is not None else suspect.last.thresh
@@ -117,29 +75,23 @@ def row_view(mission: ReportedMission, advice: Advice, *, mixed: bool = False) -
     return SuspectView(
         position=f"{suspect.position}{'=' if suspect.tied else ''}",
         parameter=suspect.parameter,
-        culprit=mission.is_changed(suspect.parameter),
+        changed=mission.is_changed(suspect.parameter, suspect.key),
         current=show(current),
         value=exact(suggestion.value) if suggestion.value is not None else "",
         direction=suggestion.direction or "",
         suggestion=suggestion.text,
-        impossible=suggestion.direction is None,
         bound=_bound(suggestion),
         limited=suggestion.limited_by,
         place=place,
-        condition=(found.source_code or "").strip()[:LONGEST_LINE],
         relation=found.relation,
         type=suspect.type,
         score=f"{suspect.score:.3g}",
-        # Scores of different types in one column cannot be compared.
-        scored=suspect.type if mixed else "",
         rank=f"{suspect.rank:.2f}",
         order={
             "position": suspect.position,
             "parameter": suspect.parameter,
             "current": _sortable(float(current)),
             "place": f"{found.file}:{found.lineno:08d}",
-            "score": _sortable(suspect.score),
-            "rank": suspect.rank,
         },
     )
 
@@ -153,16 +105,11 @@ def card_view(
     found, last = suspect.comparison, suspect.last
     unit = mission.static_info.unit_of(suspect.key)
     lines, note = source_lines(mission.static_info, found)
-    data, style = _evidence(mission, answer, mark)
-    label = (
-        f"{suspect.parameter}: compared value and threshold around the mark at {style.mark:.1f} s;"
-        f" {data.evaluations} evaluations, {data.flops.size} changes of the result"
-    )
-    figures.add(ident, suspect.key, _figure(data, style, suspect))
+    least = advice.suggestion
+    wanted = Wanted("smallest change", least.value, answer.suggested, answer.feasible)
     return CardView(
         ident=ident,
         row=row_view(mission, advice),
-        lead=_lead(advice),
         why=answer.why,
         compared=show(last.cmp),
         threshold=show(last.thresh),
@@ -172,69 +119,17 @@ def card_view(
         unit=f"{unit.package}/{unit.link_unit}",
         exposed=_exposed(found),
         others=len(suspect.keys) - 1,
-        limit_name=found.name or suspect.parameter,
-        kept=bool(data.kept.size),
-        # Made of matplotlib's own XML, in which it escapes every text.
-        plot=Markup(evidence_svg(data, style, ident, label)),
-        alone=label,
+        distance=found.distance,
+        figure=figures.draw(suspect, mark, wanted, declared, ident),
         source=lines,
         source_note=note,
         way=way_of(found),
         origin=origin_for(mission.origins, suspect.parameter, last.node, found.default),
-        declared=_declared(declared) if declared is not None else "",
+        declared=declared_text(declared) if declared is not None else "",
         declared_at=declared.place if declared is not None else "",
-        what_if=advice.what_if if advice.tried is None else advice.tried,
+        what_if=advice.what_if,
         alternatives=_alternatives(answer.others),
     )
-
-
-def _lead(advice: Advice) -> LeadView:
-    told, least = advice.told, advice.suggestion
-    value = exact(told.value) if told.value is not None else ""
-    why = told.text.partition(f" to {value} (")[2].removesuffix(")")
-    return LeadView(
-        direction=told.direction or "",
-        current=show(told.current),
-        value=value,
-        reason=told.reason or why,
-        smallest="" if least.value in {None, told.value} else least.text,
-    )
-
-
-def _evidence(
-    mission: ReportedMission, answer: SuspectAnswer, mark: Mark
-) -> tuple[PlotData, EvidenceStyle]:
-    recording, suspect = mission.recording, answer.advice.suspect
-    at = mission.seconds(mark.time_ns)
-    style = EvidenceStyle(
-        mark=at,
-        mark_type=mark.type,
-        window=at - mission.answer.question.window_s if suspect.type == "II" else None,
-        suggested=answer.suggested,
-        culprit=mission.is_changed(suspect.parameter),
-        feasible=answer.feasible,
-    )
-    data = plot_data(recording, suspect.key, mark.time_ns)
-    return data, style
-
-
-def _figure(data: PlotData, style: EvidenceStyle, suspect: Suspect) -> dict[str, object]:
-    low, high, beyond = value_span(data, style)
-    return {
-        "begin": data.begin,
-        "end": data.end,
-        "low": low,
-        "high": high,
-        "beyond": beyond,
-        "mark": style.mark,
-        "type": style.mark_type or "",
-        "window": style.window,
-        "suggested": finite(style.suggested),
-        "feasible": [[finite(low), finite(high)] for low, high in style.feasible],
-        "culprit": style.culprit,
-        "kept": bool(data.kept.size),
-        "flag": suspect.comparison.relation == "flag",
-    }
 
 
 def _bound(suggestion: Suggestion) -> str:
@@ -260,7 +155,7 @@ def _alternatives(others: Sequence[Advice]) -> list[tuple[str, str]]:
     ]
 
 
-def _declared(declared: Declared) -> str:
+def declared_text(declared: Declared) -> str:
     """``double from 0 to 1, in steps of 0.1``; ``one of low (0), high (1)``."""
     if declared.choices:
         named = ", ".join(f"{name} ({value})" for name, value in declared.choices)

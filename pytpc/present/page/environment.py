@@ -8,15 +8,13 @@ import re
 from importlib.resources import files
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 # Control characters except tabs and line ends, characters that turn the direction of text (a name
 # could look like another), and halves of characters, which a file cannot have.
 _UNSEEN = re.compile(
     r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
 )
-
-_PARTS = 2
 
 
 def environment() -> Environment:
@@ -30,7 +28,7 @@ def environment() -> Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    made.filters["short_path"] = _short_path
+    made.filters["breakable"] = _breakable
     return made
 
 
@@ -41,7 +39,7 @@ def seen(text: str) -> str:
 
 def page_script(name: str) -> str:
     """One of our scripts."""
-    return files("pytpc.present.page").joinpath("templates", name).read_text("utf-8")
+    return files("pytpc.present.page").joinpath("templates").joinpath(name).read_text("utf-8")
 
 
 def script_hash(script: str) -> str:
@@ -54,7 +52,6 @@ def _seen(value: object) -> object:
     return seen(value) if isinstance(value, str) and not isinstance(value, Markup) else value
 
 
-def _short_path(place: str) -> str:
-    """The last parts of a long path; the rest is the same for all files of a robot."""
-    parts = place.split("/")
-    return place if len(parts) <= _PARTS + 1 else "/".join(["…", *parts[-_PARTS:]])
+def _breakable(text: str) -> Markup:
+    """A text, escaped, whose paths may be broken behind each slash."""
+    return Markup(str(escape(seen(text))).replace("/", "/<wbr>"))

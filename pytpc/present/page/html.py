@@ -14,6 +14,7 @@ from markupsafe import Markup
 
 from pytpc.present.page.environment import environment, page_script, script_hash
 from pytpc.present.page.reported_mission import ReportedMission
+from pytpc.present.page.terms import TERMS, explained, term
 from pytpc.present.page.view import ROWS, mission_view
 
 _OWN = ("report-figures.js", "report-timeline.js", "report.js")
@@ -28,16 +29,16 @@ def page_text(
     """
     views = [mission_view(mission, n, on_figure) for n, mission in enumerate(missions, start=1)]
     scripts = _scripts()
-    return (
-        environment()
-        .get_template("report.html.j2")
-        .render(
-            title=title,
-            missions=views,
-            rows=ROWS,
-            scripts=scripts,
-            hashes=[script_hash(script) for script in scripts],
-        )
+    made = environment()
+    made.filters["explained"] = explained
+    made.globals["term"] = term
+    return made.get_template("report.html.j2").render(
+        title=title,
+        missions=views,
+        rows=ROWS,
+        terms=TERMS,
+        scripts=scripts,
+        hashes=[script_hash(script) for script in scripts],
     )
 
 

@@ -18,7 +18,7 @@ from markupsafe import Markup
 from pytpc.base.columns import Floats
 from pytpc.diagnosis.results.advice import RankCurves
 from pytpc.present.page.environment import seen
-from pytpc.present.page.series import gap_after, kept_of, lane, runs, thin
+from pytpc.present.page.series import gap_after, kept_of, lane, results_of, runs, thin
 from pytpc.recording.marks import MarkType
 from pytpc.recording.mission import Recording
 
@@ -53,7 +53,7 @@ def series_of(recording: Recording, key: str) -> dict[str, object]:
         ``t`` float32 seconds since the recording began, ``c`` float64 compared values, ``r`` uint8
         results, ``lt`` and ``lv`` float64 when the threshold became what it is, ``gap`` seconds
         after which a line is not drawn on, ``of`` how many evaluations there were, ``kept`` the
-        four columns of `kept_of`.
+        four columns of `kept_of`, ``results`` those of `results_of`.
     """
     events, start_ns = recording.events, recording.start_ns
     rows = events.rows_of(key)
@@ -73,6 +73,7 @@ def series_of(recording: Recording, key: str) -> dict[str, object]:
         "gap": gap_after(seconds),
         "of": int(rows.size),
         "kept": [base64_of(column) for column in spans],
+        "results": [base64_of(column) for column in results_of(recording.summaries, key, start_ns)],
     }
 
 

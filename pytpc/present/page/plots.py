@@ -9,6 +9,7 @@ marks differ in line and label.
 from __future__ import annotations
 
 import io
+import math
 import re
 import warnings
 from collections.abc import Iterator
@@ -25,6 +26,8 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from pytpc.base.off_scale import off_scale
+from pytpc.base.wording import show
 from pytpc.present.page.environment import seen
 from pytpc.present.page.series import SPANS, PlotData, joined_spans
 from pytpc.recording.events import Floats
@@ -66,9 +69,13 @@ _STYLE: dict[Any, Any] = {
     "lines.solid_capstyle": "butt",
 }
 _DOTS = 70
+_HALF_BOX = 0.1
 _HEADROOM = 0.16
 _LARGEST = 1e150
 _OUTLIER = 50.0
+_FAR = 10.0
+_FEW = 2
+_FEW_OF_MANY = 0.02
 MARK_LINES = {"I": "-", "II": (0, (5, 2)), None: (0, (1, 1.5))}
 
 
@@ -76,7 +83,8 @@ MARK_LINES = {"I": "-", "II": (0, (5, 2)), None: (0, (1, 1.5))}
 class EvidenceStyle:
     """What an evidence plot shows besides the evaluations; times in seconds.
 
-    ``feasible`` are the thresholds that would do, as (low, high); either may be infinite.
+    ``feasible`` are the thresholds that would do, as (low, high); either may be infinite. ``unit``
+    is that of the values; empty if it is not known.
     """
 
     mark: float
@@ -85,6 +93,14 @@ class EvidenceStyle:
     suggested: float | None
     culprit: bool
     feasible: tuple[tuple[float, float], ...] = ()
+    unit: str = ""
+    flag: bool = False
+
+    @property
+    def axis(self) -> str:
+        """What the axis of values shows."""
+        what = "flag" if self.flag else "value"
+        return f"{what} in {self.unit}" if self.unit else what
 
 
 def evidence_svg(data: PlotData, style: EvidenceStyle, ident: str, label: str) -> str:
@@ -104,7 +120,7 @@ def evidence_svg(data: PlotData, style: EvidenceStyle, ident: str, label: str) -
         upper, lower = figure.subplots(
             2, 1, sharex=True, gridspec_kw={"height_ratios": [5, 1], "hspace": 0.12}
         )
-        figure.subplots_adjust(left=0.115, right=0.985, top=0.97, bottom=0.165)
+        figure.subplots_adjust(left=0.13, right=0.985, top=0.97, bottom=0.165)
         _values(upper, data, style)
         _outcomes(lower, data)
         for axes in (upper, lower):
@@ -134,11 +150,7 @@ def _values(axes: Axes, data: PlotData, style: EvidenceStyle) -> None:
     colour = COLOUR["culprit" if style.culprit else "value"]
     finite, limit = _drawable(data.cmp), _drawable(data.thresh)
     axes.plot(data.time, finite, color=colour, linewidth=1.4)
-    begin, end, lowest, highest = joined_spans(data.kept, SPANS)
-    end = np.maximum(end, begin + 1e-3)
-    corners = [(begin, lowest), (begin, highest), (end, highest), (end, lowest)]
-    boxes = np.array(corners).transpose(2, 0, 1)
-    axes.add_collection(PolyCollection(list(boxes), color=colour, alpha=0.35, linewidth=1))
+    _boxes(axes, data.kept, colour)
     # A parameter keeps its value while nothing is compared with it.
     known = np.flatnonzero(np.isfinite(data.time))
     around = [*known[:1], *known, *known[-1:]]
@@ -160,7 +172,7 @@ def _values(axes: Axes, data: PlotData, style: EvidenceStyle) -> None:
             linewidth=1.3,
             linestyle=(0, (1, 1.6)),
         )
-    low, high, beyond = value_span(data, style)
+    low, high, _ = value_span(data, style)
     axes.set_ylim(low, high)
     for begin, end in style.feasible:
         shown = max(begin, low), min(end, high)
@@ -168,17 +180,38 @@ def _values(axes: Axes, data: PlotData, style: EvidenceStyle) -> None:
             axes.axhspan(
                 *shown, facecolor="none", edgecolor=COLOUR["would"], hatch="//", linewidth=0
             )
-    if beyond:
-        axes.annotate(
-            "some values are beyond this plot",
-            (0.01, 0.03),
-            xycoords="axes fraction",
-            color=COLOUR["faint"],
-        )
+    if beyond_text(data, style):
+        _at_the_edge(axes, data, style, colour)
     axes.grid(axis="y", color=COLOUR["grid"], linewidth=0.7)
     axes.set_axisbelow(True)
     axes.yaxis.set_major_locator(MaxNLocator(5))
     axes.tick_params(axis="x", length=0, labelbottom=False)
+    axes.set_ylabel(style.axis, labelpad=3)
+
+
+def _boxes(axes: Axes, kept: Floats, colour: str, around: float = 0.0) -> None:
+    """A box for each summary, from its lowest to its highest value and ``around`` beyond both."""
+    begin, end, lowest, highest = joined_spans(kept, SPANS)
+    end = np.maximum(end, begin + 1e-3)
+    low, high = lowest - around, highest + around
+    corners = [(begin, low), (begin, high), (end, high), (end, low)]
+    boxes = np.array(corners).transpose(2, 0, 1)
+    axes.add_collection(PolyCollection(list(boxes), color=colour, alpha=0.35, linewidth=1))
+
+
+def _at_the_edge(axes: Axes, data: PlotData, style: EvidenceStyle, colour: str) -> None:
+    """A triangle at the edge wherever a compared value is beyond it."""
+    for times, edge, sign in zip(times_beyond(data, style), (0.0, 1.0), "v^", strict=True):
+        axes.plot(
+            times,
+            np.full(times.size, edge),
+            transform=axes.get_xaxis_transform(),
+            linestyle="none",
+            marker=sign,
+            markersize=6,
+            color=colour,
+            clip_on=False,
+        )
 
 
 def _dots(axes: Axes, data: PlotData, values: Floats, colour: str) -> None:
@@ -207,33 +240,75 @@ def value_span(data: PlotData, style: EvidenceStyle) -> tuple[float, float, bool
     """The ends of the axis of values, and whether values lie beyond them."""
     suggested = np.nan if style.suggested is None else style.suggested
     limits = np.append(_drawable(data.thresh), suggested)
-    values = np.concatenate([data.cmp, data.kept[2], data.kept[3]])
-    low, high, beyond = _span(_drawable(values), limits)
+    low, high, beyond = _span(_drawable(_compared(data)), limits)
     margin = 0.08 * (high - low)
     return low - margin, high + margin + _HEADROOM * (high - low), beyond
+
+
+def times_beyond(data: PlotData, style: EvidenceStyle) -> tuple[Floats, Floats]:
+    """When compared values lie below the axis, and when above; float64 each, at most ``SPANS``."""
+    low, high, beyond = value_span(data, style)
+    times = np.clip(np.concatenate([data.time, *data.kept[[0, 0]]]), data.begin, data.end)
+    values = _compared(data)
+    below, above = (np.unique(times[far & beyond]) for far in (values < low, values > high))
+    return below[:: 1 + below.size // SPANS], above[:: 1 + above.size // SPANS]
+
+
+def beyond_text(data: PlotData, style: EvidenceStyle) -> str:
+    """``compared values beyond this plot, up to 1795763972``; empty if none are."""
+    low, high, beyond = value_span(data, style)
+    values = _compared(data)
+    below, above = values[values < low], values[values > high]
+    if not beyond or not below.size + above.size:
+        return ""
+    ends = [f"down to {show(float(below.min()))}"] if below.size else []
+    ends += [f"up to {show(float(above.max()))}"] if above.size else []
+    return f"compared values beyond this plot, {' and '.join(ends)}"
+
+
+def _compared(data: PlotData) -> Floats:
+    """The compared values and the ends of the summaries, which belong to the times of both."""
+    return np.concatenate([data.cmp, data.kept[2], data.kept[3]])
 
 
 def _span(values: Floats, limits: Floats) -> tuple[float, float, bool]:
     """Lowest and highest of the axis, and whether values lie beyond them.
 
-    A single outlier (a distance that starts as the largest double) must not flatten all others: if
-    the middle 96 % and the threshold fill less than a fiftieth, only they are shown.
+    Outliers (a distance that starts as the largest double, a time since the epoch) must not flatten
+    all others. If what is left without them fills less than a fiftieth, only that is shown.
     """
     everything = np.concatenate([values, limits])
     everything = everything[np.isfinite(everything)]
     if not everything.size:
         return 0.0, 1.0, False
     low, high = float(everything.min()), float(everything.max())
-    known = values[np.isfinite(values)]
-    if known.size:
-        core = np.append(np.quantile(known, [0.02, 0.98]), limits[np.isfinite(limits)])
-        inner = float(core.min()), float(core.max())
-        if inner[0] < inner[1] and (high - low) > _OUTLIER * (inner[1] - inner[0]):
-            return *inner, True
+    inner = _without_outliers(values[np.isfinite(values)], limits[np.isfinite(limits)])
+    if inner[0] < inner[1] and (high - low) > _OUTLIER * (inner[1] - inner[0]):
+        return *inner, True
     if high - low <= 1e-12 * max(abs(low), abs(high)):
         around = 0.5 * abs(low) or 0.5
         return low - around, high + around, False
     return low, high, False
+
+
+def _without_outliers(values: Floats, limits: Floats) -> tuple[float, float]:
+    """The ends of the limits and of the values that are no outliers.
+
+    Outliers are values off the scale, however many, and a few that are far from the others: at most
+    2 % of those drawn, two of a short series, and never half of it. What is not few sets the axis,
+    however far away: a signal with two levels is to be seen moving.
+    """
+    if not values.size:
+        return math.nan, math.nan
+    values = values[~off_scale(values, limits)]
+    few = min(max(_FEW, int(_FEW_OF_MANY * values.size)), (values.size - 1) // 2)
+    inward = np.argsort(np.abs(values - np.median(values)), kind="stable")
+    most = np.append(values[inward[: values.size - few]], limits)
+    low, high = float(most.min()), float(most.max())
+    reach = _FAR * (high - low)
+    near = values[(values >= low - reach) & (values <= high + reach)]
+    shown = np.append(near, limits)
+    return float(shown.min()), float(shown.max())
 
 
 def _name_mark(axes: Axes, data: PlotData, style: EvidenceStyle) -> None:
@@ -252,6 +327,8 @@ def _name_mark(axes: Axes, data: PlotData, style: EvidenceStyle) -> None:
 
 
 def _outcomes(axes: Axes, data: PlotData) -> None:
+    """The results: a line of those reported one by one, and a box for each summary."""
+    _boxes(axes, data.kept_results, COLOUR["value"], _HALF_BOX)
     if data.steps.size:
         time = np.append(data.steps, data.ends)
         level = np.append(data.outcome, data.outcome[-1]).astype(np.float64)

@@ -37,7 +37,8 @@ class PlotData:
     ``time``, ``cmp`` and ``thresh`` are float64[n], at most ``POINTS`` and the gaps: a NaN stands
     where the TPC was not evaluated for a while. ``steps`` float64[k] and ``outcome`` bool[k] are
     the changes of the result, among ``evaluations`` evaluations until ``ends``. ``kept``
-    float64[4, k] are the summaries, see `kept_of`.
+    float64[4, k] are the summaries, see `kept_of`, and ``kept_results`` their results, see
+    `results_of`.
     """
 
     time: Floats
@@ -51,6 +52,7 @@ class PlotData:
     begin: float
     end: float
     kept: Floats
+    kept_results: Floats
 
 
 def kept_of(summaries: Summaries, key: str, start_ns: int) -> Floats:
@@ -70,9 +72,21 @@ def kept_of(summaries: Summaries, key: str, start_ns: int) -> Floats:
     return found[:, np.isfinite(found).all(axis=0)]
 
 
-def joined_spans(kept: Floats, most: int) -> Floats:
-    """The summaries of `kept_of`, those of one column of a plot joined; at most ``most`` and one.
+def results_of(summaries: Summaries, key: str, start_ns: int) -> Floats:
+    """float64[4, k]: begin and end of each summary of a TPC, least and greatest result (0 or 1).
 
+    Times are seconds since the recording began. A summary with flops has both results.
+    """
+    own = summaries.take(summaries.rows_of(key))
+    both = own.flops > 0
+    times = (np.stack([own.begin_ns, own.end_ns]) - start_ns) / 1e9
+    return np.concatenate([times, [own.result & ~both, own.result | both]]).astype(np.float64)
+
+
+def joined_spans(kept: Floats, most: int) -> Floats:
+    """The summaries of `kept_of` or `results_of`, those of one column of a plot joined.
+
+    There are at most ``most`` and one.
     A plot of 600 pixels shows no more, and each span is drawn by itself.
     """
     if kept.shape[1] <= most:
@@ -113,9 +127,11 @@ def plot_data(recording: Recording, key: str, mark_ns: int) -> PlotData:
     change = np.flatnonzero(np.concatenate([[True], result[1:] != result[:-1]])[: result.size])
     kept_changes = change[thin(seconds[change], result[change].astype(np.float64), POINTS)]
     shown = flops[(flops >= begin) & (flops <= end)]
-    kept_spans = kept_of(recording.summaries, key, start_ns)
     from_to = (begin - start_ns) / 1e9, (end - start_ns) / 1e9
-    touching = (kept_spans[1] >= from_to[0]) & (kept_spans[0] <= from_to[1])
+    spans = [one(recording.summaries, key, start_ns) for one in (kept_of, results_of)]
+    kept_spans, kept_results = (
+        one[:, (one[1] >= from_to[0]) & (one[0] <= from_to[1])] for one in spans
+    )
     return PlotData(
         time=lines[0],
         cmp=lines[1],
@@ -127,7 +143,8 @@ def plot_data(recording: Recording, key: str, mark_ns: int) -> PlotData:
         evaluations=int(inside.size),
         begin=from_to[0],
         end=from_to[1],
-        kept=kept_spans[:, touching],
+        kept=kept_spans,
+        kept_results=kept_results,
     )
 
 

@@ -20,6 +20,7 @@ from pytpc.present.page.plots import COLOUR, MARK_LINES, drawing, shortened, svg
 from pytpc.present.page.reported_mission import ReportedMission
 from pytpc.present.page.series import BINS, BOTH, FALSE, TRUE, lane, runs
 from pytpc.recording.marks import MarkType
+from pytpc.static.parameters import same_parameter
 
 _LANES = 8
 _HEIGHTS = {TRUE: 0.62, BOTH: 0.34, FALSE: 0.08}
@@ -41,7 +42,8 @@ class Lane:
 def timeline(mission: ReportedMission, ident: str) -> tuple[Markup, dict[str, object] | None]:
     """The still figure, and the numbers of the moving one; nothing without a suspect.
 
-    Its lanes are the parameters that come first at some mark, and the changed one.
+    Its lanes are the parameters that come first at some mark, and the one that stands out: the
+    changed one in a study, else the first suspect of all marks together.
     """
     recording = mission.recording
     best: dict[str, tuple[int, str]] = {}
@@ -51,18 +53,18 @@ def timeline(mission: ReportedMission, ident: str) -> tuple[Markup, dict[str, ob
             if known is None or suspect.position < known[0]:
                 best[suspect.parameter] = (suspect.position, suspect.key)
     ranked = sorted(best, key=lambda name: (best[name][0], name))
-    order = ranked[:_LANES]
-    changed = next((name for name in ranked if mission.is_changed(name)), None)
-    if changed is not None and changed not in order:
-        order[-1] = changed
-    curves = mission.answer.curves
+    order, curves = ranked[:_LANES], mission.answer.curves
     if not order or curves is None:
         return Markup(""), None
+    out = _standing_out(mission, ranked)
+    if out not in order:
+        order[-1] = out
     start = recording.start_ns
-    accent = order.index(changed) if changed is not None else 0
+    accent = order.index(out)
+    culprit = mission.is_changed(out, best[out][1])
     lanes = [
-        Lane(name, lane(recording, best[name][1]), row == accent, name == changed)
-        for row, name in enumerate(order)
+        Lane(name, lane(recording, best[name][1]), name == out, name == out and culprit)
+        for name in order
     ]
     marks = [(mission.seconds(mark.time_ns), mark.type) for mark in recording.marks]
     places = [curves.parameters.index(name) for name in order]
@@ -76,8 +78,16 @@ def timeline(mission: ReportedMission, ident: str) -> tuple[Markup, dict[str, ob
     moving = lanes_of(recording, [(name, best[name][1]) for name in order])
     moving["curves"] = curves_of(curves, order, start)
     moving["accent"] = accent
-    moving["culprit"] = changed is not None
+    moving["culprit"] = culprit
     return Markup(svg), moving
+
+
+def _standing_out(mission: ReportedMission, ranked: Sequence[str]) -> str:
+    if mission.changed_parameter is not None:
+        named = (name for name in ranked if same_parameter(mission.changed_parameter, name))
+        return next(named, ranked[0])
+    lead = mission.answer.lead
+    return lead.accused.parameter if lead and lead.accused.parameter in ranked else ranked[0]
 
 
 def _svg(

@@ -7,7 +7,8 @@ figures, which takes most of the time, and calls ``on_figure`` after each.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+import shlex
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,14 +16,22 @@ from markupsafe import Markup
 
 from pytpc.base.wording import many
 from pytpc.diagnosis.question import Types
-from pytpc.diagnosis.results.advice import MarkAnswer
+from pytpc.diagnosis.results.mission_answer import MarkAnswer
 from pytpc.diagnosis.results.suspects import MarkRanking
-from pytpc.present.page.answer import AnswerView, TogetherView, answers, spoken, together
-from pytpc.present.page.cards import CardView, PageFigures, SuspectView, card_view, row_view
+from pytpc.present.page.cards import CardView, SuspectView, card_view, row_view
+from pytpc.present.page.figure import PageFigures
 from pytpc.present.page.payload import embedded, marks_json
 from pytpc.present.page.reported_mission import ReportedMission
 from pytpc.present.page.timeline import timeline
-from pytpc.recording.marks import MarkType
+from pytpc.present.page.verdict import (
+    DifferencesView,
+    LeadView,
+    VerdictView,
+    differences_view,
+    lead_view,
+    verdict_view,
+)
+from pytpc.recording.marks import MarkType, short_note
 from pytpc.static.parameters import base_key
 
 ROWS = 8
@@ -38,7 +47,7 @@ WHAT: dict[MarkType | None, str] = {
 
 @dataclass(frozen=True)
 class MarkView:
-    """One mark with its suspects."""
+    """One mark with its suspects; ``scores`` says by which scores they are ranked."""
 
     ident: str
     number: int
@@ -52,12 +61,13 @@ class MarkView:
     more: int
     parameters: int
     reason: str
+    scores: str
     changed: str | None
 
 
 @dataclass(frozen=True)
 class MissionView:
-    """One mission; ``first`` are the first suspects at its first mark."""
+    """One mission; ``mark_command`` is how marks are added where there are none."""
 
     ident: str
     name: str
@@ -68,8 +78,10 @@ class MissionView:
     marks_i: int
     marks_ii: int
     marks_untyped: int
-    together: TogetherView | None
-    answers: list[AnswerView]
+    verdict: VerdictView | None
+    lead: LeadView | None
+    differences: DifferencesView | None
+    mark_command: str
     changed_parameter: str | None
     changed_positions: str
     timeline: Markup
@@ -91,8 +103,12 @@ def mission_view(
         _mark_view(mission, answer, (ident, place), drawn, on_figure)
         for place, answer in enumerate(mission.answer.marks, start=1)
     ]
+    lead = _lead_view(mission, ident, marks, drawn)
+    if mission.answer.marks:
+        on_figure()
     still, moving = timeline(mission, ident)
     on_figure()
+    found, differing = mission.answer.diagnosis, mission.answer.differences
     return MissionView(
         ident=ident,
         name=mission.name,
@@ -103,8 +119,10 @@ def mission_view(
         marks_i=kinds.count("I"),
         marks_ii=kinds.count("II"),
         marks_untyped=kinds.count(None),
-        together=together(mission.answer),
-        answers=answers([mark.cards for mark in marks], [mark.reason for mark in marks]),
+        verdict=None if found is None else verdict_view(mission, found, _links(marks)),
+        lead=lead,
+        differences=None if differing is None else differences_view(differing),
+        mark_command=_mark_command(mission),
         changed_parameter=mission.changed_parameter,
         changed_positions=_positions(mission),
         timeline=still,
@@ -125,6 +143,44 @@ def mission_view(
     )
 
 
+def _lead_view(
+    mission: ReportedMission, ident: str, marks: Sequence[MarkView], drawn: PageFigures
+) -> LeadView | None:
+    lead = mission.answer.lead
+    if lead is None:
+        return None
+    cards = marks[lead.number - 1].cards
+    links = [card.ident for card in cards if card.row.parameter == lead.accused.parameter]
+    return lead_view(mission, lead, drawn, (f"{ident}-lead", links[0] if links else ""))
+
+
+def _links(marks: Sequence[MarkView]) -> dict[str, str]:
+    """The first card of each parameter that has one, by its place in the ranking of a mark."""
+    found: dict[str, tuple[int, str]] = {}
+    for mark in marks:
+        for place, card in enumerate(mark.cards):
+            known = found.get(card.row.parameter)
+            if known is None or place < known[0]:
+                found[card.row.parameter] = (place, card.ident)
+    return {parameter: ident for parameter, (_, ident) in found.items()}
+
+
+def _mark_command(mission: ReportedMission) -> str:
+    source = mission.source
+    if source is None or not str(source).isprintable():
+        return "pytpc mark"
+    return shlex.join(("pytpc", "mark", str(source)))
+
+
+def spoken(texts: Sequence[str]) -> str:
+    """Texts in their order, repetitions joined: ``1 (x4), 2``."""
+    found: list[tuple[str, int]] = []
+    for text in texts:
+        count = found.pop()[1] + 1 if found and found[-1][0] == text else 1
+        found.append((text, count))
+    return ", ".join(text if count == 1 else f"{text} (x{count})" for text, count in found)
+
+
 def _mark_view(
     mission: ReportedMission,
     answer: MarkAnswer,
@@ -139,7 +195,7 @@ def _mark_view(
         cards.append(card_view(mission, one, mark, drawn, f"{ident}-{place}"))
         on_figure()
     changed = mission.changed_parameter
-    mixed = len({suspect.type for suspect in ranking.suspects}) > 1
+    types = sorted({suspect.type for suspect in ranking.suspects})
     return MarkView(
         ident=ident,
         number=at[1],
@@ -147,15 +203,15 @@ def _mark_view(
         type=mark.type or "",
         what=WHAT[mark.type],
         observer=mark.observer,
-        note=mark.note,
+        note=short_note(mark.note),
         suspects=[
-            row_view(mission, one, mixed=mixed)
-            for one in (*(one.advice for one in answer.first), *answer.rest)
+            row_view(mission, one) for one in (*(one.advice for one in answer.first), *answer.rest)
         ],
         cards=cards,
         more=max(0, len(ranking.suspects) - ROWS),
         parameters=ranking.parameters,
         reason=ranking.reason,
+        scores=" and ".join(f"type {one}" for one in types),
         changed=None if changed is None else _position(ranking, changed),
     )
 

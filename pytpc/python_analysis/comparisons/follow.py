@@ -3,56 +3,22 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass, field
+from dataclasses import replace
 
+from pytpc.python_analysis.comparisons.facts import FLAG, RANGE, Compared, Fact, keeps_formula
 from pytpc.python_analysis.comparisons.outcomes import Outcomes
 from pytpc.python_analysis.comparisons.reads import Read
 from pytpc.python_analysis.comparisons.transform import How, by_function, by_operator
 from pytpc.python_analysis.flow.constants import DYNAMIC, Constants
 from pytpc.python_analysis.flow.library_calls import INSIDE, Inside, compared_inside
 from pytpc.python_analysis.flow.value_flow import Flow, Stack
-from pytpc.python_analysis.ir.instructions import Instr
+from pytpc.python_analysis.ir.instructions import Instr, Shape
 from pytpc.python_analysis.rules_file import Rules
 
-FLAG = -1
-"""In place of an operand: the value itself is the condition."""
-RANGE = -2
-"""The value bounds the ``range`` that a loop runs over."""
 _VARIANTS = 3
 _LONGEST_NAME = 200
 _TAKING = {"get", "pop", "setdefault"}
 """Methods of a dict that give the entry of their first argument."""
-
-
-@dataclass(eq=False, slots=True)
-class Fact:
-    """``at`` has the value of the parameter ``name``, after ``how``.
-
-    ``before`` is the fact that it follows from, ``via`` the store or call that brought the value,
-    and ``stack`` the calls by which it came into its function.
-    """
-
-    at: Instr
-    read: Read
-    name: str
-    how: How
-    stack: Stack = ()
-    before: Fact | None = None
-    via: Instr | None = None
-
-
-@dataclass(eq=False, slots=True)
-class Compared:
-    """A comparison ``at`` with the operand number ``operand``, or one of the kinds above.
-
-    ``inside``: the library function that ``at`` calls makes the comparison.
-    """
-
-    at: Instr
-    operand: int
-    fact: Fact
-    inside: Inside | None = None
-    predicates: list[Instr] = field(default_factory=list)
 
 
 class Follower:
@@ -76,7 +42,9 @@ class Follower:
         """Follow all reads."""
         for read in reads:
             for stack in read.stacks:
-                self._reach(Fact(read.instr, read, read.name, How(), stack))
+                self._reach(
+                    Fact(read.instr, read, read.name, How(), stack, is_object=read.is_object)
+                )
         while self._waiting:
             self._step(self._waiting.popleft())
 
@@ -96,19 +64,24 @@ class Follower:
         if how is not None and not how.is_finite:
             self._lose(fact, at)
             return
-        self._reach(Fact(at, fact.read, fact.name, how or fact.how, fact.stack, fact, via))
+        self._reach(replace(fact, at=at, how=how or fact.how, before=fact, via=via))
+
+    def _value(self, fact: Fact, at: Instr, via: Instr | None, name: str) -> None:
+        """The attribute ``name``, or what a method of this name returns, is the value."""
+        how = fact.how.times(self.rules.values[name])
+        self._reach(replace(fact, at=at, how=how, before=fact, via=via, is_object=False))
 
     def _step(self, fact: Fact) -> None:
         for to, via, stack in self.flow.moves(fact.at, fact.stack):
             if to.op == "attr" and self.flow.is_by_unknown_name(to, via):
                 continue
-            if fact.how.others and not _keeps_formula(fact, to, via):
+            if fact.how.others and not keeps_formula(fact, to, via):
                 self._lose(fact, via or to)
                 continue
             if via is not None and (fact.at, via) in self.flow.points.spread:
                 self._entry(fact, to)
                 continue
-            self._reach(Fact(to, fact.read, fact.name, fact.how, stack, fact, via))
+            self._reach(replace(fact, at=to, stack=stack, before=fact, via=via))
         for user in self.flow.users.get(fact.at, ()):
             self._use(fact, user)
 
@@ -211,7 +184,7 @@ class Follower:
                 self._named(fact, user, [name])
         elif not self.flow.is_called(user):
             if name in self.rules.values:
-                self._on(fact, user, None, fact.how.times(self.rules.values[name]))
+                self._value(fact, user, None, name)
             return
         for call in self.flow.users.get(user, ()):
             if call.op == "call" and call.args[0] is user:
@@ -228,9 +201,10 @@ class Follower:
         """An entry of a table of parameters."""
         for key in dict.fromkeys(keys):
             above = (fact.name or fact.read.namespace).rstrip("/")
-            name = f"{above}/{key}" if above not in ("", "~") else f"{above}{key}"
+            sign = fact.read.separator if above not in ("", "~") else ""
+            name = f"{above}{sign}{key}"
             if len(name) <= _LONGEST_NAME:
-                self._reach(Fact(user, fact.read, name, fact.how, fact.stack, fact))
+                self._reach(replace(fact, at=user, name=name, before=fact, via=None))
 
     def _call(self, fact: Fact, user: Instr) -> None:
         function = user.args[0]
@@ -258,7 +232,7 @@ class Follower:
     def _method(self, fact: Fact, call: Instr, name: str) -> None:
         """A call of a method of the value."""
         if name in self.rules.values:
-            self._on(fact, call, call, fact.how.times(self.rules.values[name]))
+            self._value(fact, call, call, name)
         elif name in _TAKING and len(call.args) > 1:
             self._item(fact, call, call.args[1])
         elif name == "copy":
@@ -313,6 +287,10 @@ class Follower:
             self._lose(fact, user)
             return
         how = by_function(fact.how, op, number, left)
+        names = user.data.names if isinstance(user.data, Shape) else ()
+        for name, value in zip(names, args, strict=False):
+            if value is fact.at and name in self.rules.units and how is not None:
+                how = how.times(self.rules.units[name])
         self._arithmetic(fact, user, how)
 
     def _compare_inside(self, fact: Fact, call: Instr) -> bool:
@@ -340,7 +318,7 @@ class Follower:
         return found
 
     def _compare(self, fact: Fact, at: Instr, operand: int, *branches: Instr) -> None:
-        if fact.read.is_table and not fact.name:
+        if fact.is_object or (fact.read.is_table and not fact.name):
             return
         key = (at, operand, id(fact.read), fact.name, fact.stack)
         if key not in self.compared:
@@ -378,22 +356,3 @@ class Follower:
                 if is_bound and not any(other in self.facts for other in inside.others):
                     del self.lost[call]
                     break
-
-
-def _keeps_formula(fact: Fact, to: Instr, via: Instr | None) -> bool:
-    """False where a value that was computed with others is data, and no threshold any more.
-
-    It is handed to a function, returned, put into a container, or moves the variable on that it
-    was computed with.
-    """
-    if via is None or via.op not in ("store", "setattr") or to.op not in ("load", "attr"):
-        return False
-    return not any(
-        other.op == to.op and other.data == to.data and _owner(other) == _owner(to)
-        for other in fact.how.others
-    )
-
-
-def _owner(instr: Instr) -> object:
-    """The variable whose attribute it is."""
-    return instr.args[0].data if instr.op == "attr" else None

@@ -7,7 +7,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Literal
 
-from pytpc.python_analysis.comparisons.follow import FLAG, Compared, Fact, Follower
+from pytpc.python_analysis.comparisons.facts import FLAG, Compared, Fact
+from pytpc.python_analysis.comparisons.follow import Follower
 from pytpc.python_analysis.comparisons.slicing import Slice
 from pytpc.python_analysis.flow.constants import Constants
 from pytpc.python_analysis.flow.library_calls import INSIDE, TURNED, Inside

@@ -39,7 +39,46 @@ class ParameterLists:
                 if user.op == "attr" and str(user.data) in values:
                     known = self._names(user, elements, place, names)
                     for value in self._values(user):
+                        users = self._flow.users.get(value, ())
+                        if users and all(self._is_entry(each, elements) for each in users):
+                            continue
                         yield from ((name, value) for name in known)
+
+    def tables(self, start: Instr) -> Iterator[Instr]:
+        """The dicts from the names of elements to their values: ``{p.name: p.value for ...}``."""
+        elements = self._elements(start)
+        found: dict[Instr, None] = {}
+        for element in elements:
+            for user in self._flow.users.get(element, ()):
+                if user.op == "attr" and user.data == "name":
+                    for each in self._flow.users.get(user, ()):
+                        if self._is_entry(each, elements):
+                            found.update(dict.fromkeys(self._made(each.args[0])))
+        yield from found
+
+    def _made(self, table: Instr) -> list[Instr]:
+        return [each.site for each in self._flow.points.of(table) if each.site is not None]
+
+    def _is_entry(self, user: Instr, elements: dict[Instr, int | None]) -> bool:
+        """True for ``table[p.name] = p.value``."""
+        if user.op != "setitem":
+            return False
+        key, value = user.args[1:]
+        named = key.op == "attr" and key.data == "name" and key.args[0] in elements
+        return named and self._is_value(value, elements)
+
+    def _is_value(self, value: Instr, elements: dict[Instr, int | None]) -> bool:
+        attr = value.args[0] if value.op == "call" else value
+        return (
+            attr.op == "attr"
+            and attr.args[0] in elements
+            and str(attr.data) in self._flow.points.rules.values
+        )
+
+    def text(self, instr: Instr | None) -> str:
+        """A constant text; empty where there is none, ``<dynamic>`` where it is not constant."""
+        words = [""] if instr is None else self._constants.names(instr)
+        return words[0] if len(words) == 1 else DYNAMIC
 
     def named(self, asked: Instr) -> list[str]:
         """The names in a list of names, or of tuples that begin with a name."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from pytpc.python_analysis.comparisons.follow import Fact
+from pytpc.python_analysis.comparisons.facts import Fact
 from pytpc.python_analysis.comparisons.gather import Found, position
 from pytpc.python_analysis.comparisons.slicing import Slice
 from pytpc.python_analysis.ir.instructions import Function, Instr, Variable

@@ -9,9 +9,9 @@ from pytpc.python_analysis.comparisons.parameter_lists import ParameterLists
 from pytpc.python_analysis.flow.constants import DYNAMIC, Constants
 from pytpc.python_analysis.flow.value_flow import Flow, Stack
 from pytpc.python_analysis.ir.instructions import Function, Instr
-from pytpc.python_analysis.points_to.call_table import CallTable, Given
+from pytpc.python_analysis.points_to.call_table import CallTable, Given, argument
 from pytpc.python_analysis.points_to.objects import Obj
-from pytpc.python_analysis.rules_file import Argument, ConfigRule, Rules
+from pytpc.python_analysis.rules_file import Argument, ConfigRule, ReadRule, Rules
 from pytpc.static.link_unit import Default
 
 Context = tuple[Stack, dict[Instr, tuple[object, ...]]]
@@ -24,8 +24,8 @@ class Read:
     """A parameter read: ``instr`` has its value.
 
     ``is_table``: the value has parameters as its fields (a dynamic_reconfigure config), whose names
-    are in ``namespace``. ``stacks``: the calls, the innermost last, through which its function
-    reads this name.
+    begin with ``namespace`` and ``separator``. ``is_object``: the value is an attribute of it.
+    ``stacks``: the calls, the innermost last, through which its function reads this name.
     """
 
     name: str
@@ -33,7 +33,9 @@ class Read:
     instr: Instr
     default: Default = None
     is_table: bool = False
+    is_object: bool = False
     namespace: str = ""
+    separator: str = "/"
     type: str = ""
     stacks: tuple[Stack, ...] = ((),)
 
@@ -47,21 +49,6 @@ class Exposed:
     topic: str | None
 
 
-def argument(given: list[Given], where: Argument) -> Instr | None:
-    """The argument of a call that a rule names; None where the call does not give it."""
-    for keyword, value in given:
-        if keyword is not None and keyword == where.keyword:
-            return value
-    positional = []
-    for keyword, value in given:
-        if keyword == "*":
-            break
-        if keyword is None:
-            positional.append(value)
-    place = where.place
-    return positional[place] if place is not None and place < len(positional) else None
-
-
 def find_reads(flow: Flow, constants: Constants, rules: Rules) -> list[Read]:
     """All reads in the order of the program, one for each name that a call may read."""
     found: list[Read] = []
@@ -69,8 +56,8 @@ def find_reads(flow: Flow, constants: Constants, rules: Rules) -> list[Read]:
     for instr, paths in flow.points.calls.outside.items():
         given = CallTable.arguments(instr)
         for path, _ in paths:
-            if path in rules.reads:
-                found += _read(instr, path, given, constants, rules)
+            if path in rules.reads and _is_own(flow, argument(given, rules.reads[path].node)):
+                found += _read(flow, instr, path, constants)
             if path in rules.configs:
                 row = rules.configs[path]
                 namespace = _namespace(argument(given, row.namespace), row, constants)
@@ -91,15 +78,50 @@ def _namespace(given: Instr | None, row: ConfigRule, constants: Constants) -> st
     return f"~{text}" if own else text
 
 
-def _read(
-    instr: Instr, path: str, given: list[Given], constants: Constants, rules: Rules
-) -> list[Read]:
-    where_name, where_default = rules.reads[path]
-    name = argument(given, where_name)
-    default = argument(given, where_default)
+def _is_own(flow: Flow, node: Instr | None) -> bool:
+    """True where a call does not say whose parameter it reads, or names its own node."""
+    if node is None:
+        return True
+    origins = [node] if node.op in ("const", "call") else list(flow.origins(node))
+    return all(
+        (each.op == "const" and each.data is None)
+        or any(path.endswith(_OWN_NAMES) for path, _ in flow.points.calls.outside.get(each, ()))
+        for each in origins
+    )
+
+
+_OWN_NAMES = (".get_name", ".get_fully_qualified_name")
+
+
+def _read(flow: Flow, instr: Instr, path: str, constants: Constants) -> list[Read]:
+    row = flow.points.rules.reads[path]
+    given = CallTable.arguments(instr)
+    found: list[Read] = []
+    for name, value, stacks in _named(instr, row, given, constants):
+        starts = [instr]
+        if row.callback != Argument(None):
+            starts = list(_handed(flow, argument(given, row.callback), 0))
+        kind = type(value).__name__ if value is not None else ""
+        for start in starts:
+            read = Read(name, path, start, value, type=_TYPES.get(kind, kind), stacks=stacks)
+            read.is_object = row.is_object
+            if row.separator:
+                read.is_table, read.name, read.namespace = True, "", name
+                read.separator = row.separator
+            found.append(read)
+    return found
+
+
+def _named(
+    instr: Instr, row: ReadRule, given: list[Given], constants: Constants
+) -> Iterator[tuple[str, Default, tuple[Stack, ...]]]:
+    """The names that a call reads, each with its default and the calls that lead to it."""
+    name = argument(given, row.name)
+    default = argument(given, row.default)
     names = [DYNAMIC] if name is None else constants.names(name)
     if name is None or (len(names) == 1 and DYNAMIC not in names[0]):
-        return [_made(each, path, instr, _default(constants, default), ((),)) for each in names]
+        yield from ((each, _default(constants, default), ((),)) for each in names)
+        return
     # The name is an argument of the function that reads: each of its calls reads another name.
     found: dict[tuple[str, Default], list[Stack]] = {}
     for stack, known in _contexts(constants, instr.function, _DEEPEST):
@@ -107,14 +129,7 @@ def _read(
             value = _default(constants, default)
             for each in constants.names(name):
                 found.setdefault((each, value), []).append(stack)
-    return [
-        _made(each, path, instr, value, tuple(stacks)) for (each, value), stacks in found.items()
-    ]
-
-
-def _made(name: str, path: str, instr: Instr, value: Default, stacks: tuple[Stack, ...]) -> Read:
-    kind = type(value).__name__ if value is not None else ""
-    return Read(name, path, instr, value, type=_TYPES.get(kind, kind), stacks=stacks)
+    yield from ((each, value, tuple(stacks)) for (each, value), stacks in found.items())
 
 
 def _contexts(constants: Constants, function: Function, depth: int) -> list[Context]:
@@ -159,17 +174,20 @@ def _handed(flow: Flow, callback: Instr | None, place: int) -> Iterator[Instr]:
 
 def _listed(
     flow: Flow, instr: Instr, path: str, given: list[Given], lists: ParameterLists
-) -> list[Read]:
+) -> Iterator[Read]:
     """The elements of lists of parameters."""
-    where_names, where_callback = flow.points.rules.lists[path]
-    asked = argument(given, where_names)
-    starts = [(instr, lists.named(asked))] if asked is not None else []
-    starts += [(each, []) for each in _handed(flow, argument(given, where_callback), 0)]
-    return [
-        Read(name, path, value)
-        for start, names in starts
-        for name, value in lists.taken(start, names)
-    ]
+    row = flow.points.rules.lists[path]
+    asked = argument(given, row.names)
+    starts: list[tuple[Instr, list[str]]] = []
+    if asked is not None:
+        above = lists.text(argument(given, row.namespace))
+        starts = [(instr, [f"{above}.{name}" if above else name for name in lists.named(asked)])]
+    starts += [(each, []) for each in _handed(flow, argument(given, row.callback), 0)]
+    for start, names in starts:
+        for name, value in lists.taken(start, names):
+            yield Read(name, path, value)
+        for table in lists.tables(start):
+            yield Read("", path, table, is_table=True)
 
 
 def find_exposing(flow: Flow, constants: Constants, rules: Rules) -> list[Exposed]:
@@ -182,6 +200,8 @@ def find_exposing(flow: Flow, constants: Constants, rules: Rules) -> list[Expose
             if path in rules.services:
                 for exposed in _answers(flow, instr, path, constants, rules):
                     found.setdefault(exposed.instr, exposed)
+    for exposed in overriding(flow):
+        found.setdefault(exposed.instr, exposed)
     for instr in _unresolved(flow):
         found.setdefault(instr, Exposed(instr, "rospy.Publisher.publish", None))
     return sorted(found.values(), key=lambda exposed: exposed.instr.number)
@@ -203,15 +223,30 @@ def _answers(
     flow: Flow, instr: Instr, path: str, constants: Constants, rules: Rules
 ) -> list[Exposed]:
     """What the handler of a service returns."""
-    callback = argument(CallTable.arguments(instr), rules.services[path])
+    given = CallTable.arguments(instr)
+    callbacks = [argument(given, row) for row in rules.services[path]]
     topic = _topic_of(instr, path, constants, rules)
-    found = []
-    for each in flow.points.of(callback) if callback is not None else ():
-        if each.function is not None:
-            for inner in each.function.instructions():
-                if inner.op == "return":
-                    found.append(Exposed(inner, path, topic))
-    return found
+    return [
+        Exposed(inner, path, topic)
+        for callback in callbacks
+        for each in (flow.points.of(callback) if callback is not None else ())
+        if each.function is not None
+        for inner in each.function.instructions()
+        if inner.op == "return"
+    ]
+
+
+def overriding(flow: Flow) -> Iterator[Exposed]:
+    """The results of methods that a class of a library calls, such as ``on_configure``."""
+    points = flow.points
+    for info in points.bases:
+        for path in dict.fromkeys(points.outside_bases(info)):
+            for name in points.rules.overriding.get(path, ()):
+                for each in points.of((points.heap.class_(info), name)):
+                    if each.function is not None:
+                        for inner in each.function.instructions():
+                            if inner.op == "return":
+                                yield Exposed(inner, f"{path}.{name}", None)
 
 
 def _topic(owner: Obj | None, constants: Constants, rules: Rules) -> str | None:

@@ -48,6 +48,12 @@ class How:
         return below and math.isfinite(self.scale) and math.isfinite(self.offset)
 
     @property
+    def _has_size(self) -> bool:
+        """True where the size of a list or a text is in it, from which no value follows."""
+        inner = self.inner
+        return inner is not None and (inner.op == "size" or inner.of._has_size)
+
+    @property
     def depth(self) -> int:
         """How many functions were applied."""
         return 0 if self.inner is None else 1 + self.inner.of.depth
@@ -127,7 +133,7 @@ class How:
             return None
         if self.inner is None:
             return Transform("affine", self.scale, self.offset, self.text())
-        tree = None if self.others else self.tree()
+        tree = None if self.others or self._has_size else self.tree()
         return Transform("expression", text=self.text(), tree=tree)
 
 

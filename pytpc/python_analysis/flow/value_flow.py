@@ -79,10 +79,65 @@ class Flow:
             calls by which it is there. A field, or a variable of several functions, forgets the
             calls.
         """
+        made = self._made_by(value, stack)
         for to, via in self.copies(value):
+            if made is not None and not self._may_be_of(made, to):
+                continue
             after = self._after(value, to, via, stack)
             if after is not None:
                 yield to, via, after
+
+    def _made_by(self, value: Instr, stack: Stack) -> Instr | None:
+        """The call that makes the object in whose ``__init__`` the value is, if it is kept in it.
+
+        None where it is stored elsewhere, too.
+        """
+        function = value.function
+        if not stack or function.owner is None or not function.qualname.endswith(".__init__"):
+            return None
+        own = function.parameters[0]
+        users = self.users.get(value, ())
+        kept = [user for user in users if user.op == "setattr" and user.args[1] is value]
+        is_own = all(user.args[0].op == "load" and user.args[0].data is own for user in kept)
+        if not kept or not is_own or any(user.op == "store" for user in users):
+            return None
+        made = self.points.of(stack[-1])
+        is_made = any(each.site is stack[-1] and each.kind == "instance" for each in made)
+        return stack[-1] if is_made else None
+
+    def _may_be_of(self, site: Instr, to: Instr) -> bool:
+        """False where ``to`` is an attribute of objects that other calls than ``site`` make."""
+        if to.op != "attr":
+            return True
+        owners = [each for each in self.points.of(to.args[0]) if each.kind == "instance"]
+        if not owners:
+            return True
+        if not any(each.site in (site, None) for each in owners):
+            return False
+        receivers = self._receivers(to.args[0])
+        return receivers is None or any(each.site in (site, None) for each in receivers)
+
+    def _receivers(self, value: Instr) -> list[Obj] | None:
+        """The objects on which a method is called, where ``value`` is its ``self``.
+
+        None where it is something else, or where others than the program may call the method.
+        """
+        function, calls = value.function, self.points.calls
+        info = function.owner
+        is_self = (
+            value.op == "load" and function.parameters and value.data is function.parameters[0]
+        )
+        if info is None or not is_self or function in calls.registered:
+            return None
+        if any(True for _ in self.points.outside_bases(info)):
+            return None
+        found: dict[Obj, None] = {}
+        for call in calls.callers.get(function, ()):
+            method = call.args[0] if call.op == "call" else call
+            if method.op != "attr" or method.data != function.qualname.rpartition(".")[2]:
+                return None
+            found.update(dict.fromkeys(self.points.of(method.args[0])))
+        return [each for each in found if each.kind == "instance"] or None
 
     def _after(self, value: Instr, to: Instr, via: Instr | None, stack: Stack) -> Stack | None:
         """``stack`` once ``value`` is at ``to``; None where it would leave by another call."""

@@ -6,9 +6,25 @@ from collections.abc import Callable
 
 from pytpc.python_analysis.ir.instructions import Function, Instr, Shape
 from pytpc.python_analysis.points_to.objects import Obj
+from pytpc.python_analysis.rules_file import Argument
 
 Given = tuple[str | None, Instr]
 """An argument: its keyword (``*``, ``**``: unpacked; None: positional) and its value."""
+
+
+def argument(given: list[Given], where: Argument) -> Instr | None:
+    """The argument of a call that a rule names; None where the call does not give it."""
+    for keyword, value in given:
+        if keyword is not None and keyword == where.keyword:
+            return value
+    positional = []
+    for keyword, value in given:
+        if keyword == "*":
+            break
+        if keyword is None:
+            positional.append(value)
+    place = where.place
+    return positional[place] if place is not None and place < len(positional) else None
 
 
 class CallTable:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
 from pytpc.python_analysis.ir.instructions import ANY, ClassInfo, Function, Instr, Shape
 from pytpc.python_analysis.points_to.by_name import by_name
-from pytpc.python_analysis.points_to.call_table import CallTable, Given
+from pytpc.python_analysis.points_to.call_table import CallTable, Given, argument
+from pytpc.python_analysis.points_to.named_tuples import named_tuple
 from pytpc.python_analysis.points_to.objects import EVERY, SOME, Obj
 
 if TYPE_CHECKING:
@@ -62,7 +64,7 @@ class Calls(CallTable):
             case "made" if isinstance(instr.data, Shape) and instr.data.decorates:
                 self.flow.copy(instr.args[1], instr)
             case "made" if callee.path == "collections.namedtuple" and callee.site is not None:
-                self._named_tuple(instr, callee.site, given)
+                named_tuple(self.flow, instr, callee.site, given)
             case "made":
                 path = self.flow.rules.class_of(callee.path)
                 self._outside(instr, f"{path}.__call__", callee, given)
@@ -99,23 +101,6 @@ class Calls(CallTable):
                 self.flow.write(made, f"[{names.index(name)}]", value, instr)
         if self.flow.lookup(info, "__post_init__") is not None:
             self.run_method(instr, made, "__post_init__", [])
-
-    def _named_tuple(self, instr: Instr, site: Instr, given: list[Given]) -> None:
-        """An object of a class that ``collections.namedtuple`` made at ``site``."""
-        names: list[object] = []
-        if len(site.args) > 2:
-            words = site.args[2]
-            names = [part.data for part in words.args]
-            if isinstance(words.data, str) and words.op == "const":
-                names = list(words.data.replace(",", " ").split())
-        made = self.flow.heap.made("collections.namedtuple.__call__", instr)
-        self.flow.add(instr, [made])
-        for place, (keyword, value) in enumerate(given):
-            name = keyword or (names[place] if place < len(names) else None)
-            if isinstance(name, str):
-                self.flow.write(made, name, value, instr)
-            if name in names:
-                self.flow.write(made, f"[{names.index(name)}]", value, instr)
 
     # Calls of functions of the sources
 
@@ -250,7 +235,7 @@ class Calls(CallTable):
             if owner.kind == "container":
                 flow.read_element(owner, ANY, instr)
         elif owner is not None:
-            self._on_object(instr, name, owner, given)
+            self._on_object(instr, path, owner, given)
         if path not in _COPYING and not (owner is not None and owner.kind in _HOLDING):
             made = flow.heap.made(flow.rules.class_of(path), instr)
             flow.add(instr, [made])
@@ -258,7 +243,7 @@ class Calls(CallTable):
                 if keyword not in (None, "*", "**"):
                     flow.write(made, keyword, value, instr)
         for _, value in given:
-            self._hand(instr, path, value, given)
+            self._hand(instr, path, owner, value, given)
 
     def _super(self, instr: Instr) -> None:
         info = instr.function.owner
@@ -304,9 +289,11 @@ class Calls(CallTable):
             flow.add(instr, [source])
         flow.write(to, SOME, flow.slot(source, EVERY), instr)
 
-    def _on_object(self, instr: Instr, name: str, owner: Obj, given: list[Given]) -> None:
+    def _on_object(self, instr: Instr, path: str, owner: Obj, given: list[Given]) -> None:
         """A method of a container or of an outside object, which may keep its arguments."""
         flow = self.flow
+        kind, _, name = path.rpartition(".")
+        is_tidy, waits = kind in flow.rules.tidy, flow.rules.waits(name)
         values = [value for keyword, value in given if keyword not in ("*", "**", *_PATIENCE)]
         if values and name == "get" and isinstance(values[0].data, bool):
             # A queue's `get(True, 0.5)`.
@@ -323,7 +310,7 @@ class Calls(CallTable):
             stored = values[1:] if name in ("insert", "setdefault") else values
             for value in stored:
                 flow.write(owner, SOME, value, instr)
-        elif owner.kind != "container" and name not in _TAKING and not flow.rules.waits(name):
+        elif owner.kind != "container" and name not in _TAKING and not (is_tidy or waits):
             for value in values:
                 flow.write(owner, SOME, value, instr)
         if name in _TAKING:
@@ -333,7 +320,7 @@ class Calls(CallTable):
                 flow.copy(value, instr)
         elif name in ("values", "copy", "keys", "items"):
             self._view(instr, name, owner)
-        elif owner.kind != "container":
+        elif owner.kind != "container" and not is_tidy:
             flow.copy(flow.slot(owner, EVERY), instr)
 
     def _view(self, instr: Instr, name: str, owner: Obj) -> None:
@@ -350,12 +337,26 @@ class Calls(CallTable):
             flow.add((made, SOME), [pair])
             flow.slot(made, SOME)
 
-    def _hand(self, instr: Instr, path: str, value: Instr, given: list[Given]) -> None:
+    def _hand(
+        self, instr: Instr, path: str, owner: Obj | None, value: Instr, given: list[Given]
+    ) -> None:
         """Code outside the sources may run the functions that it gets."""
         others = [each for each in given if each[1] is not value]
-        self.flow.when(value, lambda found: self._register(instr, path, found, others))
+        rows = self.flow.rules.hands.get(path, ())
+        kinds = [kind for row, kind in rows if argument(given, row) is value]
+        kind = kinds[0] if kinds else "<argument>"
+        # A future passes itself.
+        first = owner if path.endswith(".add_done_callback") else None
 
-    def _register(self, instr: Instr, path: str, found: Obj, others: list[Given]) -> None:
+        def register(found: Obj) -> None:
+            made = partial(self.flow.heap.made, kind)
+            self._register(instr, path, found, others, lambda at: first or made(at))
+
+        self.flow.when(value, register)
+
+    def _register(
+        self, instr: Instr, path: str, found: Obj, others: list[Given], made: Callable[[Instr], Obj]
+    ) -> None:
         owner = found.parent
         given: list[Given] = []
         while found.kind == "partial" and found.parent is not None and found.site is not None:
@@ -371,7 +372,7 @@ class Calls(CallTable):
         self._bind(instr, function, owner, given)
         first = len(given) + (1 if owner is not None else 0)
         for param in function.param_instrs[first:]:
-            self.flow.add(param, [self.flow.heap.made("<argument>", param)])
+            self.flow.add(param, [made(param)])
         if path.startswith(_SYNCHRONOUS):
             self._run_now(instr, function, others, first)
             return

@@ -62,8 +62,9 @@ Field = tuple[Obj, str]
 class Heap:
     """Makes each abstract object once."""
 
-    def __init__(self, paths: Iterable[str]) -> None:
-        """``paths`` are the dotted names that the rules are about."""
+    def __init__(self, paths: Iterable[str], tidy: Iterable[str]) -> None:
+        """``paths`` are the dotted names that the rules are about, ``tidy`` some of the classes."""
+        self._tidy = frozenset(tidy)
         self._known: dict[Hashable, Obj] = {}
         self._about = {"collections.namedtuple"}
         for path in paths:
@@ -104,7 +105,8 @@ class Heap:
         if depth >= _DEEPEST:
             return owner
         full = f"{path}.{name}"
-        if full not in self._about and owner.kind not in ("container", "namespace"):
+        known = full in self._about or path in self._tidy
+        if not known and owner.kind not in ("container", "namespace"):
             full = f"{OTHER}.{name}"
         found = self.get("part", full, parent=owner)
         owner.parts[name] = found

@@ -7,7 +7,7 @@ are added on demand, as calls of functions and classes are found. It ignores the
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from pytpc.python_analysis.ir.instructions import ANY, ClassInfo, Function, Instr, Module, Variable
 from pytpc.python_analysis.ir.program import Program
@@ -31,7 +31,7 @@ class PointsTo(Solver):
         super().__init__(_LEAST_STEPS + _STEPS * len(program.instructions()))
         self.program = program
         self.rules = rules
-        self.heap = Heap(rules.paths)
+        self.heap = Heap(rules.paths, rules.tidy)
         self.defaults: dict[Instr, list[Instr]] = {}
         self._frozen: dict[ClassInfo, list[ClassInfo | str]] = {}
         self._always: dict[ClassInfo, set[str]] = {}
@@ -66,6 +66,14 @@ class PointsTo(Solver):
                     order[self.rules.class_of(base.path)] = None
             self._frozen[info] = list(order)
         return self._frozen[info]
+
+    def outside_bases(self, info: ClassInfo) -> Iterator[str]:
+        """The dotted names of the classes outside the sources that a class is derived from."""
+        for base in self.bases.get(info, ()):
+            if base.class_info is not None:
+                yield from self.outside_bases(base.class_info)
+            elif base.path:
+                yield base.path
 
     def lookup(
         self, info: ClassInfo, name: str, after: ClassInfo | None = None

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import ast
 import configparser
-import tomllib
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,6 +17,11 @@ from typing import Any
 
 from pytpc.base.errors import InputError
 from pytpc.python_analysis.sources.source_files import parse
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
 
 _SETUP = {"setup", "generate_distutils_setup"}
 # Errors of expressions that are not constant, or wrong.

@@ -7,14 +7,89 @@ from __future__ import annotations
 
 import socket
 import struct
+import time
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 from urllib.parse import urlsplit
 
+if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer, WriteableBuffer
+    from typing_extensions import Self
+
 LENGTH = struct.Struct("<I")
-_LARGEST_HEADER = 1 << 28
+_LARGEST_HEADER = 1 << 20
 _LARGEST_ANSWER = 1 << 22
 _PATIENCE_S = 5.0
+_PART = 1 << 16
+# As roscpp has it: a host without power is noticed after a minute and a half.
+_IDLE_S, _PROBE_S, _PROBES = 60, 10, 3
+
+
+class TimedSocket(socket.socket):
+    """A connection that ends after a time, and after as many bytes, whatever the other side does.
+
+    A socket's own time-out begins anew with each byte.
+
+    Args:
+        connection: is taken over.
+        patience_s: how long all that is received and sent may take.
+        largest: how many bytes may be received.
+    """
+
+    def __init__(self, connection: socket.socket, patience_s: float, largest: int) -> None:
+        """See the class."""
+        super().__init__(fileno=connection.detach())
+        self._until = time.monotonic() + patience_s
+        self._left = largest
+
+    @classmethod
+    def connect_to(cls, host: str, port: int, patience_s: float, largest: int) -> Self:
+        """Connect, within the time that all the rest has, too.
+
+        Raises:
+            OSError: nobody is there, or does not answer in time.
+        """
+        began = time.monotonic()
+        connection = socket.create_connection((host, port), patience_s)
+        return cls(connection, patience_s - (time.monotonic() - began), largest)
+
+    def recv(self, bufsize: int, flags: int = 0, /) -> bytes:
+        """As a socket does."""
+        self._limit()
+        data = super().recv(bufsize, flags)
+        self._left -= len(data)
+        return data
+
+    def recv_into(self, buffer: WriteableBuffer, nbytes: int = 0, flags: int = 0) -> int:
+        """As a socket does."""
+        self._limit()
+        count = super().recv_into(buffer, nbytes, flags)
+        self._left -= count
+        return count
+
+    def sendall(self, data: ReadableBuffer, flags: int = 0, /) -> None:
+        """As a socket does."""
+        self._limit()
+        super().sendall(data, flags)
+
+    def released(self) -> socket.socket:
+        """The connection without limits, which does not block; this object has none any more."""
+        connection = socket.socket(fileno=self.detach())
+        connection.setblocking(False)
+        connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        connection.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+        connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_KEEPIDLE, _IDLE_S)
+        connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_KEEPINTVL, _PROBE_S)
+        connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_KEEPCNT, _PROBES)
+        return connection
+
+    def _limit(self) -> None:
+        if self._left < 0:
+            raise ConnectionAbortedError("more bytes than expected")
+        left_s = self._until - time.monotonic()
+        if left_s <= 0:
+            raise TimeoutError("timed out")
+        self.settimeout(left_s)
 
 
 def encode_header(fields: Mapping[str, str]) -> bytes:
@@ -56,13 +131,13 @@ def receive(connection: socket.socket, count: int) -> bytes:
     Raises:
         OSError: the other side closes the connection before, or is too slow.
     """
-    data = b""
+    data = bytearray()
     while len(data) < count:
-        part = connection.recv(count - len(data))
+        part = connection.recv(min(count - len(data), _PART))
         if not part:
             raise ConnectionResetError("closed before the end")
         data += part
-    return data
+    return bytes(data)
 
 
 def receive_sized(connection: socket.socket, largest: int) -> bytes:
@@ -78,14 +153,14 @@ def receive_sized(connection: socket.socket, largest: int) -> bytes:
     return receive(connection, length)
 
 
-def receive_header(connection: socket.socket, largest: int = _LARGEST_HEADER) -> dict[str, str]:
+def receive_header(connection: socket.socket) -> dict[str, str]:
     """The fields of the other side's header.
 
     Raises:
         OSError: as ``receive``.
         ValueError: it is no header, or an error of the other side.
     """
-    fields = decode_header(receive_sized(connection, largest))
+    fields = decode_header(receive_sized(connection, _LARGEST_HEADER))
     if "error" in fields:
         raise ValueError(fields["error"])
     return fields
@@ -111,9 +186,10 @@ def call_service(uri: str, service: str, kind: ServiceType, request: bytes, call
     if place.hostname is None or place.port is None:
         raise ValueError(f"{uri} is no address of a service")
     header = {"callerid": caller, "service": service, "md5sum": kind.md5sum, "type": kind.name}
-    with socket.create_connection((place.hostname, place.port), _PATIENCE_S) as connection:
+    largest = _LARGEST_HEADER + _LARGEST_ANSWER
+    with TimedSocket.connect_to(place.hostname, place.port, _PATIENCE_S, largest) as connection:
         connection.sendall(encode_header(header))
-        receive_header(connection, _LARGEST_ANSWER)
+        receive_header(connection)
         connection.sendall(sized(request))
         worked = receive(connection, 1) != b"\0"
         answer = receive_sized(connection, _LARGEST_ANSWER)

@@ -16,23 +16,31 @@ import subprocess
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import takewhile
 from pathlib import Path
-from typing import Self
+from typing import TYPE_CHECKING
 
 from pytpc.base.errors import MissingToolError, RunError
-from pytpc.base.signals import end_group, signals_end
+from pytpc.base.signals import Stop, end_group, signals_end
 from pytpc.ros.ros1.master import Master
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
 GRAPH_WORD = "TPC_GRAPH"
 _CALLER = "/tpc_graph"
 _START_TRIES = 3
 _MASTER_PATIENCE_S = 15.0
 _TAIL_BYTES = 16384
-_COLOUR = re.compile(r"\x1b\[[0-9;]*m")
+# roslaunch also sets the title of the terminal.
+_COLOUR = re.compile(r"\x1b\[[0-9;]*m|\x1b\]2;[^\x07]*\x07")
 # roslaunch ends with status 0, however a required node ended.
 _REQUIRED_DIED = re.compile(r"REQUIRED process \[[^\]]*\] has died!\s+process has died")
 _TELLING = re.compile(r"has died|FATAL|Exception|[Ee]rror|ERROR|not found|cannot", re.ASCII)
-_ROSOUT = "/usr/lib/rosout/rosout"
+# What roslaunch says after an exception: the element of the launch file, and where its log is.
+_END_OF_DETAILS = re.compile(r"^XML is|^The traceback|has died|Exception:")
+_MOST_DETAILS = 6
+_ROSOUT = "lib/rosout/rosout"
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,12 +63,22 @@ class GraphProcess:
         return is_over and _REQUIRED_DIED.search(self._end_of_log()) is None
 
     def tail(self, lines: int = 3) -> list[str]:
-        """The last lines of its output, without colours; lines about errors if there are any."""
+        """The last lines of its output; those about errors if there are any.
+
+        Colours and the terminal's title are left out.
+        """
         # roslaunch underlines with equals signs, some of them on the line itself.
         said = [line.strip("= \t") for line in self._end_of_log().splitlines()]
         said = [line for line in said if line]
-        telling = [line for line in said if _TELLING.search(line)]
-        return (telling or said)[-lines:]
+        told: list[str] = []
+        number = 0
+        while number < len(said):
+            if _TELLING.search(said[number]):
+                line, number = _with_details(said, number)
+                told.append(line)
+            else:
+                number += 1
+        return told[-lines:] or said[-lines:]
 
     def _end_of_log(self) -> str:
         try:
@@ -70,7 +88,24 @@ class GraphProcess:
                 text = stream.read().decode("utf-8", "replace")
         except OSError:
             return ""
-        return _COLOUR.sub("", text)
+        return without_colours(text)
+
+
+def _with_details(said: Sequence[str], number: int) -> tuple[str, int]:
+    """A line of output, with those that it announces by a colon, as roslaunch does; and the number
+    of the line after these.
+
+    For a broken YAML file, these have the file, the line in it, and what is wrong with it.
+    """
+    line = said[number]
+    if not line.endswith(":"):
+        return line, number + 1
+    details = list(
+        takewhile(lambda one: not _END_OF_DETAILS.search(one), said[number + 1 :][:_MOST_DETAILS])
+    )
+    # An arrow below a line of the file points at nothing when all stands on one line.
+    text = " ".join([line, *(one for one in details if one != "^")])
+    return text, number + 1 + len(details)
 
 
 class RosGraph:
@@ -80,18 +115,32 @@ class RosGraph:
         env: the environment of an installed workspace (``pytpc.build.build.workspace_env``).
         folder: for ROS's home, its logs and the output of all processes; made where missing.
         use_sim_time: set ``/use_sim_time`` before any node starts.
+        stop: what the caller does at a signal: it ends the graph itself. Without it, SIGTERM and
+            SIGHUP raise SystemExit as long as the graph stands.
+        inherited: descriptors that the processes of the graph hold, too, such as a lock.
 
     Raises:
         RunError: on entering, when the master does not come up.
         MissingToolError: on entering, when rosmaster is not installed.
     """
 
-    def __init__(self, env: Mapping[str, str], folder: Path, *, use_sim_time: bool = False) -> None:
+    def __init__(
+        self,
+        env: Mapping[str, str],
+        folder: Path,
+        *,
+        use_sim_time: bool = False,
+        stop: Stop | None = None,
+        inherited: Sequence[int] = (),
+    ) -> None:
         self.folder = folder.absolute()
         self.uri = ""
         self._word = secrets.token_hex(8)
         self._base_env = dict(env)
         self._use_sim_time = use_sim_time
+        self._stop = stop
+        self._inherited = tuple(inherited)
+        self._unhurried: list[GraphProcess] = []
         self._processes: list[GraphProcess] = []
         self._exits = contextlib.ExitStack()
 
@@ -112,12 +161,13 @@ class RosGraph:
         for name in ("home", "log", "out"):
             (self.folder / name).mkdir(parents=True, exist_ok=True)
         with contextlib.ExitStack() as exits:
-            exits.enter_context(signals_end())
+            if self._stop is None:
+                exits.enter_context(signals_end())
             exits.callback(self._end)
             self._start_master()
             if self._use_sim_time:
                 self.call("setParam", "/use_sim_time", True)
-            self.start("rosout", [_ROSOUT])
+            self.start("rosout", [self._rosout()])
             self._exits = exits.pop_all()
         return self
 
@@ -157,6 +207,7 @@ class RosGraph:
                     stdout=stream,
                     stderr=subprocess.STDOUT,
                     start_new_session=True,
+                    pass_fds=self._inherited,
                 )
             except FileNotFoundError as error:
                 raise MissingToolError(f"{argv[0]} not found: is ROS 1 installed?") from error
@@ -165,6 +216,10 @@ class RosGraph:
         process = GraphProcess(name, popen, log, patience_s, may_end)
         self._processes.append(process)
         return process
+
+    def never_hurry(self, process: GraphProcess) -> None:
+        """Let a process have its patience to end, even if the user asks twice to stop."""
+        self._unhurried.append(process)
 
     def check(self) -> None:
         """Check that all processes still run, except those that may end.
@@ -186,7 +241,12 @@ class RosGraph:
         """
         if process in self._processes:
             self._processes.remove(process)
-        return end_group(process.popen, process.patience_s, 3.0)
+
+        def hurry() -> bool:
+            in_a_hurry = self._stop is not None and self._stop.in_a_hurry
+            return in_a_hurry and process not in self._unhurried
+
+        return end_group(process.popen, process.patience_s, 3.0, hurry)
 
     def call(self, method: str, *arguments: object) -> object:
         """Call a method of ROS's master API, which gives code, message and value.
@@ -195,6 +255,12 @@ class RosGraph:
             RunError: the master does not answer, or says no.
         """
         return Master(self.uri, _CALLER).call(method, *arguments)
+
+    def _rosout(self) -> str:
+        """The program of ROS that gathers log messages, where this ROS has it."""
+        prefixes = self._base_env.get("CMAKE_PREFIX_PATH", "").split(os.pathsep)
+        places = [Path(prefix) / _ROSOUT for prefix in (*prefixes, "/usr") if prefix]
+        return str(next((place for place in places if place.is_file()), places[-1]))
 
     def _start_master(self) -> None:
         for attempt in range(_START_TRIES):
@@ -225,15 +291,25 @@ class RosGraph:
     def _end(self) -> None:
         for process in reversed(list(self._processes)):
             self.stop(process)
-        for number, patience in ((signal.SIGTERM, 2.0), (signal.SIGKILL, 2.0)):
-            left = _processes_with_word(self._word)
-            for pid in left:
-                with contextlib.suppress(ProcessLookupError, PermissionError):
-                    os.kill(pid, number)
-            until = time.monotonic() + patience
-            while left and time.monotonic() < until:
-                time.sleep(0.05)
-                left = _processes_with_word(self._word)
+        end_processes(self._word)
+
+
+def without_colours(text: str) -> str:
+    """The output of roslaunch without colours and the terminal's title."""
+    return _COLOUR.sub("", text)
+
+
+def end_processes(word: str) -> None:
+    """End what is left of the graph with this word, except this process: SIGTERM, then SIGKILL."""
+    for number, patience in ((signal.SIGTERM, 2.0), (signal.SIGKILL, 2.0)):
+        left = _processes_with_word(word)
+        for pid in left:
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                os.kill(pid, number)
+        until = time.monotonic() + patience
+        while left and time.monotonic() < until:
+            time.sleep(0.05)
+            left = _processes_with_word(word)
 
 
 def _processes_with_word(word: str) -> list[int]:

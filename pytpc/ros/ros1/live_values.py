@@ -10,19 +10,17 @@ Protocol: http://wiki.ros.org/ROS/Parameter%20Server%20API.
 
 from __future__ import annotations
 
-import contextlib
 import struct
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
-from pytpc.base.errors import InputError, RunError, TpcError
+from pytpc.base.closest import did_you_mean
+from pytpc.base.errors import InputError, RunError
+from pytpc.ros.live_change import LiveChange
 from pytpc.ros.ros1.connection import LENGTH, ServiceType, call_service, sized
 from pytpc.ros.ros1.master import Master
-from pytpc.values.apply import shown
-from pytpc.values.journal import Journal, JournalEntry
 from pytpc.values.new_value import Refused, guessed, read_value
-from pytpc.values.origins import from_json, to_json
+from pytpc.values.recording import leaves
 from pytpc.values.scalars import type_of
 
 _CALLER = "/tpc_apply"
@@ -30,22 +28,6 @@ _SERVICE = "set_parameters"
 _RECONFIGURE = ServiceType("dynamic_reconfigure/Reconfigure", "bb125d226a21982a4a98760418dc2672")
 # The parts of the message in their order, with the form of a value; texts have none.
 _PARTS: Mapping[str, str] = {"bool": "<?", "int": "<i", "string": "", "double": "<d"}
-
-
-@dataclass(frozen=True, slots=True)
-class LiveChange:
-    """A value that is set on a running robot.
-
-    ``old`` is None if it was not set. ``service`` is that of dynamic_reconfigure, empty
-    where the node has none. ``nodes`` run in whose namespace the name is.
-    """
-
-    master: str
-    name: str
-    old: object
-    new: object
-    service: str
-    nodes: tuple[str, ...]
 
 
 class Robot:
@@ -62,6 +44,18 @@ class Robot:
         """
         names = self._master.call("getParamNames")
         return sorted(map(str, names)) if isinstance(names, list) else []
+
+    def values(self) -> dict[str, object]:
+        """All parameters, by full names.
+
+        Raises:
+            RunError: the master does not answer.
+        """
+        root = self._master.parameter("/")
+        return dict(leaves("", root)) if root else {}
+
+    def close(self) -> None:
+        """There is no connection to close."""
 
     def value(self, name: str) -> object:
         """The value of a parameter, None where there is none.
@@ -85,8 +79,10 @@ class Robot:
         """
         old = self.value(name)
         if old is None and not force:
+            hint = did_you_mean(name, self.parameters())
             raise InputError(
-                f"{name} is not on the parameter server of {self._master.uri}; --force sets it"
+                f"{name} is not on the parameter server of"
+                f" {self._master.uri}{hint or '; --force sets it'}"
             )
         try:
             new = guessed(given) if old is None else read_value(given, type_of(old), force=force)
@@ -135,58 +131,6 @@ class Robot:
                 return taken, True
         self._master.call("setParam", name, value)
         return self.value(name), False
-
-
-def set_live(
-    robot: Robot, change: LiveChange, journal: Journal
-) -> tuple[JournalEntry, object, bool]:
-    """Set a value on the running robot and record it.
-
-    Returns:
-        The entry of the journal; the value that holds then; whether the node has taken it at once.
-
-    Raises:
-        RunError: the robot refuses it.
-        TpcError: it cannot be recorded; then nothing is set.
-    """
-    live = {
-        "master": change.master,
-        "name": change.name,
-        "service": change.service,
-        "old": to_json(change.old),
-        "new": to_json(change.new),
-    }
-    entry = journal.add_live(change.name, (shown(change.old), shown(change.new)), live)
-    try:
-        holds, taken = robot.put(change.name, change.new, change.service)
-    except BaseException:
-        # The node may have taken it all the same, and only its answer did not come.
-        with contextlib.suppress(TpcError):
-            if repr(robot.value(change.name)) == repr(change.old):
-                journal.remove(entry)
-        raise
-    return entry, holds, taken
-
-
-def take_back_live(
-    entry: JournalEntry, journal: Journal, *, dry_run: bool = False, force: bool = False
-) -> None:
-    """Undo a change of the running robot and forget it.
-
-    Raises:
-        TpcError: the value was changed since, or the robot refuses it.
-    """
-    live = entry.live
-    name, old, new = str(live["name"]), from_json(live["old"]), from_json(live["new"])
-    robot = Robot(str(live["master"]))
-    now = robot.value(name)
-    if not force and repr(now) not in (repr(new), repr(old)):
-        raise RunError(
-            f"{name} is {shown(now)} now: something else has set it; --force sets {entry.old}"
-        )
-    if not dry_run:
-        robot.take_back(name, old, str(live["service"]))
-        journal.remove(entry)
 
 
 def _reconfigure(uri: str, service: str, name: str, value: object, caller: str) -> object:

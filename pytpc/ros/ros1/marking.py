@@ -6,66 +6,62 @@ import os
 import secrets
 import threading
 import time
-from collections import deque
 from collections.abc import Callable
-from typing import NamedTuple
 
 from pytpc.base.errors import RunError
 from pytpc.base.wording import many
 from pytpc.ingest.ros1 import decode_time
-from pytpc.recording.marking_session import MarkChange, View
-from pytpc.recording.marks import (
-    MARK_TYPES,
-    NOTE_TOPIC,
-    UNDO_TOPIC,
-    Mark,
-    note_text,
-    topic_for,
-    topic_of_observer,
+from pytpc.recording.marking_session import View
+from pytpc.ros.held_marks import HELD_S, HeldMarks, times_and_note
+from pytpc.ros.ros1.master import Master
+from pytpc.ros.ros1.publisher import (
+    STRING,
+    TIME,
+    MessageType,
+    RawPublisher,
+    encode_string,
+    encode_time,
 )
-from pytpc.ros.ros1.master import Master, own_host
-from pytpc.ros.ros1.publisher import STRING, TIME, RawPublisher, encode_string, encode_time
-from pytpc.ros.ros1.subscriber import RawSubscriber
+from pytpc.ros.ros1.subscriber import UnregisteredSubscriber
 
 _CLOCK = "/clock"
 _LOOK_S = 1.0
-# A mark without listeners is sent to those who connect within this time: a recorder that is just
-# starting, a master that is being restarted. Later ones may be recording another mission.
-_HELD_S = 60.0
+# A recorder that looks for new topics finds those of this node within a second, as rosbag's does.
+_FOUND_S = 1.5
+# How long messages wait for subscribers that the master knows and that have not connected yet.
+_CONNECTED_S = 5.0
 
 
-class _HeldMark(NamedTuple):
-    """A message without listeners, and until when (steady seconds) it is kept."""
-
-    topic: str
-    content: int | str
-    until: float
-
-
-class GraphMarks:
+class GraphMarks(HeldMarks):
     """The side of a marking session that speaks to a graph. It goes on without a master.
+
+    A new node has no subscribers for a moment: a recorder has to find its topics and to connect. So
+    its first messages wait for those that the master knows, for some seconds at most. A mark has
+    the time at which the key was pressed, so that it may arrive late.
 
     Args:
         master: URI of the ROS master.
         observer: namespace of the topics, empty for none.
         what: what the observer is doing, for the title.
+        advertise: become a node of the graph at once, else with the first mark.
     """
 
-    def __init__(self, master: str, observer: str, what: str = "marking") -> None:
+    def __init__(
+        self, master: str, observer: str, what: str = "marking", *, advertise: bool = True
+    ) -> None:
+        super().__init__(observer)
         self._what = what
-        self._observer = observer
         self._master = Master(master, f"/tpc_mark_{os.getpid()}_{secrets.token_hex(3)}")
-        times = [topic_for(Mark(0, kind, observer)) for kind in (*MARK_TYPES, None)]
-        times.append(topic_of_observer(observer, UNDO_TOPIC))
-        topics = {**dict.fromkeys(times, TIME), topic_of_observer(observer, NOTE_TOPIC): STRING}
-        self._publisher = RawPublisher(self._master, topics)
-        self._held: deque[_HeldMark] = deque()
+        self._advertise = advertise
+        self._publisher: RawPublisher | None = None
+        self._new = _NewNode()
         self._start_ns: int | None = None
         self._fault = f"waiting for the ROS master at {master}"
         self._simulated = False
         self._clock_ns: int | None = None
-        self._clock: _Clock | None = None
-        self._ended = threading.Event()
+        self._clock = _Clock(self._master, self._hear)
+        self._ended = False
+        self._wake = threading.Event()
         self._looked = threading.Event()
         self._thread = threading.Thread(target=self._watch, daemon=True)
         self._thread.start()
@@ -91,74 +87,86 @@ class GraphMarks:
             self._start_ns = now_ns
         start_ns = self._start_ns or 0
         who = f" as {self._observer}" if self._observer else ""
-        listeners = self._publisher.listeners()
-        heard = f"{many(len(listeners), 'node')} listening" if listeners else "nobody listens"
+        listeners = self._publisher.listeners() if self._publisher is not None else set()
+        heard = f"{many(len(listeners), 'node')} listening"
+        if not listeners:
+            looks = self._new.waits
+            none = "no recorder listens; start one with: pytpc record"
+            heard = "looking for a recorder" if looks else none
+        if not self._advertise:
+            heard = "listeners are found with the first mark"
         if self._held:
-            heard += f", {many(len(self._held), 'message')} kept for later listeners"
+            kept = f"{many(len(self._held), 'message')} kept for a recorder that starts"
+            heard += f"; {kept} within {HELD_S:.0f} s"
         clock = "wall time" if self._clock_ns is None else "simulated time"
         clock = "no /clock yet" if now_ns is None else clock
         status = f"{self._fault or 'connected'}; {heard}; {clock}"
         return View(f"{self._what}{who} on {self._master.uri}", (status,), start_ns, now_ns)
 
-    def send(self, change: MarkChange) -> str:
-        """Tell the graph what happened to the marks."""
-        before, after = change
-        if after is None and before is not None:
-            self._publish(topic_of_observer(self._observer, UNDO_TOPIC), before.time_ns)
-        elif after is not None and before is not None:
-            topic = topic_of_observer(self._observer, NOTE_TOPIC)
-            self._publish(topic, note_text(after.time_ns, after.note))
-        elif after is not None:
-            self._publish(topic_for(after), after.time_ns)
-        return ""
-
-    def tick(self) -> None:
-        """Send messages that had no listeners to those who have connected since, in order."""
-        waiting, self._held = self._held, deque()
-        for held in waiting:
-            sent = self._sent(held.topic, held.content)
-            if sent == 0 and time.monotonic() < held.until:
-                self._held.append(held)
+    @property
+    def _waits(self) -> bool:
+        return self._new.waits
 
     def close(self) -> None:
         """Leave the graph."""
-        self._ended.set()
-        self._thread.join(3.0)
-        if self._clock is not None:
-            self._clock.close()
-        self._publisher.close()
+        self._wait_for_listeners()
+        self._ended = True
+        self._wake.set()
+        self._thread.join(0.5)
+        self._clock.close()
+        if self._publisher is not None:
+            self._publisher.close()
+
+    def _wait_for_listeners(self) -> None:
+        """Give the listeners of messages that are held the time to connect."""
+        while self._held and self._new.waits:
+            time.sleep(0.05)
+        self.tick()
 
     def _publish(self, topic: str, content: int | str) -> None:
-        if self._sent(topic, content) == 0:
-            self._held.append(_HeldMark(topic, content, time.monotonic() + _HELD_S))
+        super()._publish(topic, content)
+        if not self._advertise:
+            self._advertise = True
+            self._new.begin()
+            self._wake.set()
 
     def _sent(self, topic: str, content: int | str) -> int:
-        """Send a time (ns) or a text to all who listen now; their number."""
+        if self._publisher is None:
+            return 0
         message = encode_time(content) if isinstance(content, int) else encode_string(content)
         return self._publisher.publish(topic, message)
 
     def _watch(self) -> None:
-        """Check every second that the master knows us, and register at one that does not."""
-        while not self._ended.is_set():
+        """Look every second at the master, and register at one that does not know us."""
+        while not self._ended:
             try:
-                if not self._publisher.is_registered():
-                    self._join()
+                self._look()
                 self._fault = ""
-            except RunError:
-                if not self._fault:
+            except RunError as error:
+                if self._publisher is None and self._advertise:
+                    self._fault = str(error)
+                elif not self._fault:
                     self._fault = (
                         "the ROS master is gone: marks go to the nodes that are still connected"
                     )
             self._looked.set()
-            self._ended.wait(_LOOK_S)
+            self._wake.wait(_LOOK_S)
+            self._wake.clear()
 
-    def _join(self) -> None:
-        self._publisher.register()
-        self._simulated = self._master.has_sim_time()
-        if self._clock is not None:
-            self._clock.close()
-        listener = Master(self._master.uri, f"{self._master.caller}_clock")
-        self._clock = _Clock(listener, self._hear)
+    def _look(self) -> None:
+        if self._advertise and self._publisher is None:
+            self._publisher = RawPublisher(self._master, _topics(self._observer))
+        if self._fault:
+            self._simulated = self._master.has_sim_time()
+        self._clock.look()
+        if self._publisher is not None and not self._publisher.is_registered():
+            self._new.begin()
+            self._publisher.register()
+            self._simulated = self._master.has_sim_time()
+        if self._publisher is not None:
+            self._new.look(self._master, self._publisher)
+            # A terminal that is stopped keeps no mark back.
+            self.tick()
 
     def _hear(self, message: bytes) -> None:
         try:
@@ -167,13 +175,53 @@ class GraphMarks:
             self._fault = f"{_CLOCK}: {error}"
 
 
+class _NewNode:
+    """Whom the messages of a new node wait for: the subscribers that the master knows."""
+
+    def __init__(self) -> None:
+        self._since: float | None = None
+        self._all_there = False
+
+    @property
+    def waits(self) -> bool:
+        """Whether messages wait: not before the node is new, and not for longer than they may."""
+        limit = _FOUND_S + _CONNECTED_S
+        is_new = self._since is not None and time.monotonic() < self._since + limit
+        return is_new and not self._all_there
+
+    def begin(self) -> None:
+        """The node registers now; for one that did before, nobody is waited for again."""
+        self._since = self._since or time.monotonic()
+
+    def look(self, master: Master, publisher: RawPublisher) -> None:
+        """See whether the subscribers that the master knows have connected.
+
+        Raises:
+            RunError: the master does not answer.
+        """
+        if not self.waits or time.monotonic() < (self._since or 0.0) + _FOUND_S:
+            return
+        known = master.state().subscribers
+        self._all_there = all(
+            publisher.listeners(topic).issuperset(known.get(topic, ()))
+            for topic in publisher.topics
+        )
+
+
+def _topics(observer: str) -> dict[str, MessageType]:
+    """The topics of an observer's marks."""
+    times, note = times_and_note(observer)
+    return {**dict.fromkeys(times, TIME), note: STRING}
+
+
 class _Clock:
     """Listens to /clock in a thread of its own."""
 
     def __init__(self, master: Master, on_message: Callable[[bytes], None]) -> None:
         self._on_message = on_message
         self._ended = threading.Event()
-        self._subscriber = RawSubscriber(master, own_host(os.environ, master.uri), [_CLOCK])
+        self._subscriber = UnregisteredSubscriber(master, [_CLOCK])
+        self.look = self._subscriber.look
         self._thread = threading.Thread(target=self._listen, daemon=True)
         self._thread.start()
 

@@ -6,21 +6,28 @@ Protocols: http://wiki.ros.org/ROS/Master_API, http://wiki.ros.org/ROS/Slave_API
 from __future__ import annotations
 
 import os
+import reprlib
 import socket
 import threading
 import xmlrpc.client
-from collections.abc import Callable, Mapping
-from http.client import HTTPException
-from typing import NamedTuple
+from collections.abc import Callable, Mapping, Sequence
+from http.client import HTTPConnection, HTTPException, HTTPResponse
+from typing import Any, NamedTuple
 from urllib.parse import urlsplit
+from xml.parsers.expat import ExpatError
 from xmlrpc.server import SimpleXMLRPCRequestHandler, SimpleXMLRPCServer
 
 from pytpc.base.errors import RunError
+from pytpc.ros.ros1.connection import TimedSocket
+from pytpc.ros.ros1.listening import PeerServer, bind_address
 
 DEFAULT_URI = "http://localhost:11311"
 # A number over 32 bits is an OverflowError, a URI of another scheme a plain OSError.
 CALL_ERRORS = (OSError, HTTPException, xmlrpc.client.Error, ValueError, OverflowError)
 _PATIENCE_S = 5.0
+_LARGEST_ANSWER = 1 << 24
+# How long the end of this program waits for the master to take note of it.
+_LEAVE_S = 0.5
 
 Names = dict[str, list[str]]
 
@@ -64,7 +71,8 @@ def call(uri: str, method: str, *arguments: object) -> object:
     finally:
         proxy("close")()
     if not isinstance(answer, list) or len(answer) != 3 or answer[0] != 1:
-        raise xmlrpc.client.Fault(0, str(answer))
+        # One that is nested ten thousand times is no text.
+        raise xmlrpc.client.Fault(0, reprlib.repr(answer))
     return answer[2]
 
 
@@ -140,6 +148,20 @@ class Master:
         """
         return self.parameter("/use_sim_time") is True
 
+    def leave(self, calls: Sequence[tuple[str, ...]]) -> None:
+        """Make these calls, of a method with its arguments; nobody waits for a slow master."""
+
+        def run() -> None:
+            try:
+                for method, *arguments in calls:
+                    self.call(method, *arguments)
+            except RunError:
+                return
+
+        thread = threading.Thread(target=run, daemon=True)
+        thread.start()
+        thread.join(_LEAVE_S)
+
     def state(self) -> SystemState:
         """Who publishes, subscribes to and offers what; a part in another form is empty.
 
@@ -175,27 +197,32 @@ class Master:
 
 
 class SlaveServer:
-    """Answers the calls of a node's slave API in a thread of its own.
+    """Answers the calls of a node's slave API; no caller can keep another one waiting.
 
     Args:
         host: the address at which the graph reaches this machine.
         answers: for each method that this node has, a function of the caller's name and the
             other arguments; a ValueError says why it refuses.
-        bind: the address to listen at.
+
+    Raises:
+        RunError: it cannot listen.
     """
 
-    def __init__(self, host: str, answers: Mapping[str, Callable[..., object]], bind: str) -> None:
+    def __init__(self, host: str, answers: Mapping[str, Callable[..., object]]) -> None:
         """See the class; on return it answers."""
         self._answers = answers
-        self._server = SimpleXMLRPCServer((bind, 0), _Handler, logRequests=False, allow_none=True)
+        try:
+            self._server = _RpcServer(
+                (bind_address(host), 0), _Handler, logRequests=False, allow_none=True
+            )
+        except OSError as error:
+            raise RunError(f"cannot listen at {host}: {reason_of(error)}") from error
         self._server.register_instance(self)
-        self.uri = f"http://{host}:{self._server.server_address[1]}/"
-        threading.Thread(target=self._server.serve_forever, args=(0.05,), daemon=True).start()
+        self.uri = f"http://{host}:{self._server.port}/"
 
     def close(self) -> None:
         """Answer no more calls."""
-        self._server.shutdown()
-        self._server.server_close()
+        self._server.close()
 
     def _dispatch(self, method: str, arguments: tuple[object, ...]) -> list[object]:
         """Code, message and value, as the slave API has them."""
@@ -213,19 +240,44 @@ class SlaveServer:
         return [0, f"{method} is not for this node", 0]
 
 
+class _RpcServer(PeerServer, SimpleXMLRPCServer):
+    """Neither waits for a caller that is slow."""
+
+
 class _Handler(SimpleXMLRPCRequestHandler):
     """ROS posts to any path."""
 
     rpc_paths = ()
 
+    def log_message(self, *_: object) -> None:
+        """What is wrong with a call is the caller's affair, and the terminal is in use."""
+
+
+class _TimedConnection(HTTPConnection):
+    def connect(self) -> None:
+        super().connect()
+        self.sock = TimedSocket(self.sock, _PATIENCE_S, _LARGEST_ANSWER)
+
 
 class _PatientTransport(xmlrpc.client.Transport):
-    """Gives up on a node that does not answer."""
+    """Gives up on a node that does not answer, or never stops."""
 
-    def make_connection(self, host: object) -> object:  # type: ignore[override]
-        connection = super().make_connection(host)  # type: ignore[arg-type]
-        connection.timeout = _PATIENCE_S
+    accept_gzip_encoding = False
+
+    def make_connection(self, host: tuple[str, dict[str, str]] | str) -> HTTPConnection:
+        place, self._extra_headers, _ = self.get_host_info(host)
+        connection = _TimedConnection(place, timeout=_PATIENCE_S)
+        self._connection = host, connection
         return connection
+
+    def parse_response(self, response: HTTPResponse) -> Any:  # noqa: ANN401
+        parser, unmarshaller = self.getparser()
+        try:
+            parser.feed(response.read())
+            parser.close()
+            return unmarshaller.close()
+        except (ExpatError, LookupError, TypeError, AttributeError, AssertionError) as error:
+            raise ValueError(f"the answer is not XML-RPC: {error}") from error
 
 
 def _names(answer: object, part: int) -> Names:

@@ -10,19 +10,21 @@ from __future__ import annotations
 
 import contextlib
 import os
-import select
 import socket
 import struct
 import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from socketserver import BaseRequestHandler
+from typing import cast
 
 from pytpc.base.errors import RunError
-from pytpc.ros.ros1.connection import encode_header, receive_header, sized
-from pytpc.ros.ros1.master import Master, SlaveServer, own_host
+from pytpc.ros.ros1.connection import TimedSocket, encode_header, receive_header, sized
+from pytpc.ros.ros1.listening import PeerServer, Request, bind_address
+from pytpc.ros.ros1.master import Master, SlaveServer, own_host, reason_of
 
-_LARGEST_HEADER = 1 << 20
-_PATIENCE_S = 2.0
+_MOST_LISTENERS = 200
+_PART = 4096
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,9 +54,15 @@ def encode_string(text: str) -> bytes:
 class RawPublisher:
     """Publishes messages that are bytes already. Registers only when told to (``register``).
 
+    It is for a few small messages: a subscriber that leaves more unread than its connection holds
+    loses the connection, so that it keeps no other one waiting. If it lives it connects again.
+
     Args:
         master: the ROS master; its caller is the node that this is.
         topics: with the type of their messages.
+
+    Raises:
+        RunError: it cannot listen.
     """
 
     def __init__(self, master: Master, topics: Mapping[str, MessageType]) -> None:
@@ -64,13 +72,16 @@ class RawPublisher:
         self._lock = threading.Lock()
         self._links: dict[str, list[tuple[str, socket.socket]]] = {topic: [] for topic in topics}
         self._host = own_host(os.environ, master.uri)
-        self._listener = socket.create_server(("", 0))
         answers: dict[str, Callable[..., object]] = {
             "requestTopic": self._request,
             "getPublications": self._publications,
         }
-        self._server = SlaveServer(self._host, answers, "")
-        threading.Thread(target=self._accept, daemon=True).start()
+        self._server = SlaveServer(self._host, answers)
+        try:
+            self._listener = _Acceptor(self._host, self._welcome)
+        except OSError as error:
+            self._server.close()
+            raise RunError(f"cannot listen at {self._host}: {reason_of(error)}") from error
 
     def register(self) -> None:
         """Tell the master of all topics; it does no harm to tell it again.
@@ -80,6 +91,11 @@ class RawPublisher:
         """
         for topic, kind in self._topics.items():
             self._master.call("registerPublisher", topic, kind.name, self._server.uri)
+
+    @property
+    def topics(self) -> tuple[str, ...]:
+        """What is published."""
+        return tuple(self._topics)
 
     def is_registered(self) -> bool:
         """Whether the master still knows this node.
@@ -95,11 +111,10 @@ class RawPublisher:
         data = sized(message)
         with self._lock:
             for link in list(self._links[topic]):
-                try:
-                    link[1].sendall(data)
-                    sent += 1
-                except OSError:
+                if _is_closed(link[1]) or not _takes(link[1], data):
                     self._drop(topic, link)
+                else:
+                    sent += 1
         return sent
 
     def listeners(self, only: str | None = None) -> set[str]:
@@ -118,11 +133,9 @@ class RawPublisher:
 
     def close(self) -> None:
         """Leave the graph. A master that is gone already is no error."""
-        for topic in self._topics:
-            try:
-                self._master.call("unregisterPublisher", topic, self._server.uri)
-            except RunError:
-                break
+        self._master.leave(
+            [("unregisterPublisher", topic, self._server.uri) for topic in self._topics]
+        )
         self._server.close()
         self._listener.close()
         with self._lock:
@@ -133,38 +146,28 @@ class RawPublisher:
     def _request(self, _caller: str, topic: str, _protocols: object) -> list[object]:
         if topic not in self._topics:
             raise ValueError(f"{topic} is not published here")
-        return ["TCPROS", self._host, self._listener.getsockname()[1]]
+        return ["TCPROS", self._host, self._listener.port]
 
     def _publications(self, _caller: str) -> list[list[str]]:
         return [[topic, kind.name] for topic, kind in self._topics.items()]
 
-    def _accept(self) -> None:
-        while True:
-            try:
-                connection, _ = self._listener.accept()
-            except OSError:
-                return  # closed
-            threading.Thread(target=self._welcome, args=(connection,), daemon=True).start()
-
-    def _welcome(self, connection: socket.socket) -> None:
-        """Shake hands with a subscriber; close the connection of anything else."""
-        try:
-            connection.settimeout(_PATIENCE_S)
-            connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            fields = receive_header(connection, _LARGEST_HEADER)
-            topic = fields.get("topic", "")
-            kind = self._topics.get(topic)
-            if kind is None or fields.get("md5sum") not in ("*", kind.md5sum):
-                connection.sendall(encode_header({"error": f"{topic} is not of that type here"}))
-                raise ValueError("not a subscriber")
-            answer = {"callerid": self._master.caller, "topic": topic, "type": kind.name}
-            answer |= {"md5sum": kind.md5sum, "message_definition": kind.definition}
-            connection.sendall(encode_header(answer | {"latching": "0"}))
-        except (OSError, ValueError):
-            connection.close()
+    def _welcome(self, connection: TimedSocket) -> None:
+        """Shake hands with a subscriber; the connection of anything else ends."""
+        fields = receive_header(connection)
+        topic = fields.get("topic", "")
+        kind = self._topics.get(topic)
+        if kind is None or fields.get("md5sum") not in ("*", kind.md5sum):
+            connection.sendall(encode_header({"error": f"{topic} is not of that type here"}))
             return
+        self.listeners()  # Forgets those that have left.
+        if sum(map(len, self._links.values())) >= _MOST_LISTENERS:
+            connection.sendall(encode_header({"error": "too many subscribers"}))
+            return
+        answer = {"callerid": self._master.caller, "topic": topic, "type": kind.name}
+        answer |= {"md5sum": kind.md5sum, "message_definition": kind.definition}
+        connection.sendall(encode_header(answer | {"latching": "0"}))
         with self._lock:
-            self._links[topic].append((fields.get("callerid", ""), connection))
+            self._links[topic].append((fields.get("callerid", ""), connection.released()))
 
     def _drop(self, topic: str, link: tuple[str, socket.socket]) -> None:
         self._links[topic].remove(link)
@@ -172,10 +175,34 @@ class RawPublisher:
             link[1].close()
 
 
+class _Acceptor(PeerServer):
+    """Shakes hands with each subscriber; ``welcome`` takes the connection over, or leaves it."""
+
+    def __init__(self, host: str, welcome: Callable[[TimedSocket], None]) -> None:
+        self._welcome = welcome
+        super().__init__((bind_address(host), 0), BaseRequestHandler)
+
+    def finish_request(self, request: Request, client_address: object) -> None:
+        self._welcome(cast(TimedSocket, request))
+
+    def shutdown_request(self, request: Request) -> None:
+        # Without the shutdown, which would end a connection that was taken over.
+        self.close_request(request)
+
+
+def _takes(connection: socket.socket, data: bytes) -> bool:
+    """Whether there is room for the message. What has gone in part can only be broken off."""
+    try:
+        return connection.send(data) == len(data)
+    except OSError:
+        return False
+
+
 def _is_closed(connection: socket.socket) -> bool:
     """Whether the other side has left; a subscriber sends nothing after its header."""
     try:
-        ready, _, _ = select.select([connection], [], [], 0)
-        return bool(ready) and not connection.recv(1, socket.MSG_PEEK)
+        return not connection.recv(_PART)
+    except BlockingIOError:
+        return False
     except OSError:
         return True

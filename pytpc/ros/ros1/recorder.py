@@ -12,138 +12,34 @@ from __future__ import annotations
 import argparse
 import contextlib
 import os
+import threading
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
 from pytpc.base.errors import RunError
 from pytpc.base.signals import stop_on_signals
-from pytpc.ingest.losses import LossCounter
-from pytpc.ingest.ros1 import decode_log, decode_string, decode_time
-from pytpc.ingest.rosout_line import DROPPED_PREFIX, Drop, parse_other
 from pytpc.recording.marks import MarkMessages
-from pytpc.recording.mission import Dropped
+from pytpc.ros.intake import CLOCK, Recorder
 from pytpc.ros.mission_run import RecorderStatus, save_status
 from pytpc.ros.ros1.bag_file import BagFile
+from pytpc.ros.ros1.graph import GRAPH_WORD, end_processes
 from pytpc.ros.ros1.master import Master
-from pytpc.ros.ros1.subscriber import RawSubscriber, Source
+from pytpc.ros.ros1.subscriber import RawSubscriber
 
-REPORT = b"threshold_information:"
-BATCH = b"threshold_batch:"
-DROPPED = DROPPED_PREFIX.encode()
 NODE_NAME = "/tpc_recorder"
 STATUS_PERIOD_S = 0.2
 DRAIN_S = 2.0
 LOOK_PERIOD_S = 1.0
-_CLOCK = "/clock"
-_MOST_EARLY = 10_000
 _ROSOUT = "/rosout"
-_REPORTS = "/threshold_information"
-_CLOCK_BYTES = 8
-
-
-class Recorder:
-    """Takes in messages and keeps the account of them.
-
-    ``sim_time`` says that /clock is the graph's clock, else it is the wall's.
-    """
-
-    def __init__(
-        self, bag: BagFile, topics: Sequence[str], until: str | None, sim_time: bool
-    ) -> None:
-        self._bag = bag
-        self._topics = set(topics)
-        self._until = until
-        self._sim_time = sim_time
-        self._clock_ns = 0
-        self._counter: LossCounter[str] = LossCounter()
-        self._batches: LossCounter[str] = LossCounter()
-        self._reports = 0
-        self._dropped: dict[tuple[str, str, str], Dropped] = {}
-        self._done_ns: int | None = None
-        self._early: list[tuple[Source, bytes]] = []
-        self._began_ns = self.now_ns()
-
-    def add_topic(self, topic: str) -> None:
-        """From now on this topic is put into the bag, too."""
-        self._topics.add(topic)
-
-    def now_ns(self) -> int:
-        """The graph's time; 0 until the first /clock."""
-        return self._clock_ns if self._sim_time else time.time_ns()
-
-    def take(self, source: Source, data: bytes) -> None:
-        """Put one message into the bag.
-
-        Raises:
-            ValueError: a message that is not of the type of its topic; it is in the bag.
-        """
-        if source.topic == _CLOCK and self._sim_time and len(data) >= _CLOCK_BYTES:
-            self._clock_ns = decode_time(data)
-            self._began_ns = self._began_ns or self._clock_ns
-        if source.topic in self._topics:
-            self._early.append((source, data))
-        if self.now_ns() or len(self._early) > _MOST_EARLY:
-            self.put_early()
-        if source.topic == _ROSOUT:
-            log = decode_log(data)
-            sender = source.node or log.node.decode("utf-8", "replace")
-            self._counter.see(sender, log.seq, latched=source.latched)
-            self._reports += log.msg.startswith(REPORT)
-            if log.msg.startswith(BATCH):
-                self._reports += self._batches.see_text(sender, log.msg[len(BATCH) :])
-            self._see_dropped(sender, log.msg)
-        elif source.topic == _REPORTS:
-            text = decode_string(data)
-            self._reports += self._counter.see_text(source.node, text)
-            self._see_dropped(source.node, text)
-        elif source.topic == self._until and any(data) and self._done_ns is None:
-            self._done_ns = self.now_ns()
-
-    def _see_dropped(self, node: str, text: bytes) -> None:
-        """Count what the process of ``node`` says in this text that it dropped."""
-        if DROPPED not in text:
-            return
-        for line in text.decode("utf-8", "replace").split("\n"):
-            drop = parse_other(line, node, stamped=not line.startswith(DROPPED_PREFIX))
-            if isinstance(drop, Drop):
-                known = self._dropped.get((node, drop.key, drop.why))
-                count, flops = (known.count, known.flops) if known else (0, 0)
-                self._dropped[node, drop.key, drop.why] = Dropped(
-                    drop.key, node, count + drop.count, flops + drop.flops, drop.why
-                )
-
-    def put_early(self) -> None:
-        """Put the messages that wait for the first /clock into the bag; call it before closing.
-
-        A clock may begin at any time. Messages from before it get its first time, as if they had
-        come with it: at 0 they would make the mission as long as the clock's first time.
-        """
-        for source, data in self._early:
-            self._bag.write(source, self.now_ns(), data)
-        self._early.clear()
-
-    def status(self, *, closed: bool = False) -> RecorderStatus:
-        """The account until now."""
-        return RecorderStatus(
-            ready=True,
-            done_ns=self._done_ns,
-            closed=closed,
-            began_ns=self._began_ns,
-            now_ns=self.now_ns(),
-            reports=self._reports,
-            messages=dict(sorted(self._bag.messages.items())),
-            lost=dict(sorted(self._counter.lost.items())),
-            missed_before=dict(sorted(self._counter.missed_before.items())),
-            dropped=tuple(sorted(self._dropped.values(), key=Dropped.order)),
-        )
 
 
 class Discovery:
     """Finds the topics of observers as they appear, and a master that has forgotten this node.
 
-    The master is asked once a second. If it does not answer, connected nodes are still recorded.
+    If the master does not answer, connected nodes are still recorded.
     """
 
     def __init__(
@@ -153,14 +49,11 @@ class Discovery:
         self._subscriber = subscriber
         self._recorder = recorder
         self._topics = dict.fromkeys(topics)
-        self._looked = 0.0
 
     def look(self) -> None:
-        """Look, where the last time is long enough ago."""
-        if time.monotonic() - self._looked < LOOK_PERIOD_S:
-            return
-        self._looked = time.monotonic()
+        """Look once."""
         try:
+            self._recorder.see_sim_time(self._subscriber.master.has_sim_time())
             state = self._subscriber.master.state()
             for topic in state.publishers:
                 if MarkMessages.message_type(topic) is not None and topic not in self._topics:
@@ -180,6 +73,11 @@ class Wanted(NamedTuple):
 
     topics: Sequence[str]
     until: str | None = None
+
+    def resolved(self) -> Wanted:
+        """With full names: publishers do not know theirs without the slash in front."""
+        full = [f"/{topic.lstrip('/')}" for topic in self.topics]
+        return Wanted(full, None if self.until is None else f"/{self.until.lstrip('/')}")
 
 
 class GraphRecorder:
@@ -208,18 +106,24 @@ class GraphRecorder:
         strict: bool = True,
     ) -> None:
         """See the class; on return all topics are registered."""
-        topics, until = wanted
+        topics, until = wanted.resolved()
         recorded = list(dict.fromkeys([*topics, *([until] if until is not None else [])]))
-        subscribed = list(dict.fromkeys([*recorded, _CLOCK]))
+        subscribed = list(dict.fromkeys([*recorded, CLOCK]))
         self._tolerated = () if strict else (ValueError,)
         self._subscriber = RawSubscriber(master, host, subscribed)
         try:
             self._bag = BagFile(bag)
-            self._recorder = Recorder(self._bag, recorded, until, master.has_sim_time())
+            simulated = master.has_sim_time()
+            self._recorder = Recorder(self._bag, recorded, until, simulated)
+            if not simulated:
+                self._recorder.hold()
         except BaseException:
             self._subscriber.close()
             raise
-        self._discovery = Discovery(self._subscriber, self._recorder, subscribed)
+        self._left = threading.Event()
+        discovery = Discovery(self._subscriber, self._recorder, subscribed)
+        # A thread of its own: a master that hangs is given up after seconds.
+        threading.Thread(target=self._look, args=(discovery,), daemon=True).start()
 
     def step(self) -> RecorderStatus:
         """Take the messages that have come, wait a moment for more, and return the account.
@@ -227,9 +131,9 @@ class GraphRecorder:
         Raises:
             ValueError: see ``strict``.
         """
-        self._discovery.look()
         self._take(0.05)
-        return self._recorder.status()
+        self._recorder.settle()
+        return self._status()
 
     def finish(self) -> RecorderStatus:
         """Take the messages that are still on the way, leave the graph and close the bag.
@@ -238,30 +142,55 @@ class GraphRecorder:
             ValueError: see ``strict``.
         """
         limit = time.monotonic() + DRAIN_S
+        before = -1
         try:
-            while time.monotonic() < limit and self._take(0.1):
-                pass
+            # A part of a message is no message yet.
+            while time.monotonic() < limit and before != self._subscriber.received:
+                before = self._subscriber.received
+                self._take(0.1)
         finally:
             self.leave()
-        self._recorder.put_early()
-        self._bag.close()
-        return self._recorder.status(closed=True)
+            try:
+                self._recorder.put_early()
+            finally:
+                self._bag.close()
+        return self._status(closed=True)
 
     def leave(self) -> None:
         """Leave the graph."""
+        self._left.set()
         self._subscriber.close()
 
-    def _take(self, timeout_s: float) -> int:
-        count = 0
+    def _look(self, discovery: Discovery) -> None:
+        discovery.look()
+        while not self._left.wait(LOOK_PERIOD_S):
+            discovery.look()
+
+    def _status(self, *, closed: bool = False) -> RecorderStatus:
+        account = self._recorder.status(closed=closed)
+        heard: list[str] = []
+        # Nobody asks any more once reports come, and these may be thousands a second.
+        if not (closed or account.is_reporting):
+            heard = sorted(n for t, n in self._subscriber.connections() if t == _ROSOUT)
+        return replace(account, broken=self._subscriber.broken, heard=tuple(heard))
+
+    def _take(self, timeout_s: float) -> None:
         for source, data in self._subscriber.poll(timeout_s):
             with contextlib.suppress(*self._tolerated):
                 self._recorder.take(source, data)
-            count += 1
-        return count
 
 
-def record(bag: Path, status: Path, topics: Sequence[str], until: str | None) -> None:
+def record(bag: Path, status: Path, wanted: Wanted, parent: int) -> None:
     """Record until SIGINT or SIGTERM; needs a master at ROS_MASTER_URI.
+
+    If the process that started the graph was killed, nobody else would end it: then the bag is
+    closed, and all processes of the graph are ended.
+
+    Args:
+        bag: the file.
+        status: where the account is kept, for the process that started this one.
+        wanted: what is recorded.
+        parent: number of that process.
 
     Raises:
         RunError: the master does not answer.
@@ -269,14 +198,23 @@ def record(bag: Path, status: Path, topics: Sequence[str], until: str | None) ->
     """
     stop = stop_on_signals()
     master = Master(os.environ["ROS_MASTER_URI"], NODE_NAME)
-    graph = GraphRecorder(master, os.environ.get("ROS_IP", "127.0.0.1"), Wanted(topics, until), bag)
+    graph = GraphRecorder(master, os.environ.get("ROS_IP", "127.0.0.1"), wanted, bag)
     told = 0.0
-    while not stop.is_set():
-        account = graph.step()
-        if time.monotonic() - told > STATUS_PERIOD_S:
-            told = time.monotonic()
-            save_status(account, status)
-    save_status(graph.finish(), status)
+    try:
+        while not stop.is_set() and os.getppid() == parent:
+            account = graph.step()
+            if time.monotonic() - told > STATUS_PERIOD_S:
+                told = time.monotonic()
+                # On a full disk the bag can still be closed.
+                with contextlib.suppress(OSError):
+                    save_status(account, status)
+    finally:
+        try:
+            account = graph.finish()
+        finally:
+            if os.getppid() != parent:
+                end_processes(os.environ[GRAPH_WORD])
+    save_status(account, status)
 
 
 def main() -> None:
@@ -285,10 +223,12 @@ def main() -> None:
     parser.add_argument("--bag", type=Path, required=True)
     parser.add_argument("--status", type=Path, required=True)
     parser.add_argument("--until")
+    parser.add_argument("--parent", type=int, required=True)
     parser.add_argument("topics", nargs="+")
     arguments = parser.parse_args()
+    wanted = Wanted(arguments.topics, arguments.until)
     try:
-        record(arguments.bag, arguments.status, arguments.topics, arguments.until)
+        record(arguments.bag, arguments.status, wanted, arguments.parent)
     except (RunError, ValueError, OSError) as error:
         raise SystemExit(f"error: {error}") from error
 

@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable, Sequence
 
 from pytpc.base.errors import MissingToolError, RunError
+from pytpc.base.paths import reach_debians_packages
 from pytpc.base.signals import stop_on_signals
 from pytpc.base.wording import many
 from pytpc.ingest.losses import LossCounter
@@ -31,6 +32,7 @@ _BATCH = "threshold_batch"
 _QUEUE = 65_536
 _WATCH_S = 2.0
 _POLL_S = 0.2
+_LEAVE_S = 1.0
 
 Say = Callable[[str], None]
 
@@ -148,6 +150,7 @@ def run(arguments: Sequence[str], say: Say) -> None:
         RunError: the master does not answer at the start.
         MissingToolError: rospy is not installed.
     """
+    reach_debians_packages()
     try:
         import rospy  # noqa: PLC0415 (a second, and only with ROS)
         from std_msgs.msg import String  # noqa: PLC0415
@@ -175,10 +178,14 @@ def run(arguments: Sequence[str], say: Say) -> None:
         )
         say(f"passing on reports from {ROSOUT} to {TOPIC}")
         _serve(subscriber, relay, watch, lambda: stop.is_set() or rospy.is_shutdown())
-        say(relay.account())
+        broken = sum(subscriber.broken.values())
+        say(relay.account() + (f", {many(broken, 'message')} broken off" if broken else ""))
     finally:
         subscriber.close()
-        rospy.signal_shutdown("the relay ends")
+        # It calls the master, without a limit in time.
+        leaving = threading.Thread(target=rospy.signal_shutdown, args=("it ends",), daemon=True)
+        leaving.start()
+        leaving.join(_LEAVE_S)
 
 
 def _serve(

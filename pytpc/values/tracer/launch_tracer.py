@@ -7,7 +7,8 @@ started, and what a ``<param command=...>`` would run is not run: a command may 
     python3 launch_tracer.py FILE [NAME:=VALUE]...
 
 It prints one JSON object: ``parameters`` by full name, each a list of settings of which the last
-holds; ``nodes`` as `pytpc.values.trace.LaunchNode` has them; ``files`` with their SHA-256.
+holds; ``nodes`` as `pytpc.values.trace.LaunchNode` has them; ``absent`` the package and program of
+those that roslaunch would not find on this machine; ``files`` with their SHA-256.
 """
 
 from __future__ import annotations
@@ -16,18 +17,23 @@ import contextlib
 import hashlib
 import json
 import re
+import resource
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, cast
 from xml.dom import expatbuilder
 
+import yaml
 from rosgraph.names import canonicalize_name, ns_join
 from roslaunch.config import ROSLaunchConfig
 from roslaunch.core import RLException
 from roslaunch.xmlloader import XmlLoader, XmlParseException
-from rospkg import ResourceNotFound
+from roslib.packages import find_node
+from rospkg import ResourceNotFound, RosPack
 
+_MOST_MEMORY = 1 << 30
+_MOST_VALUES = 1000000
 COMMAND_LINE = "command line"
 ANONYMOUS = "__tpc_anon"
 _PRIVATE = re.compile(r"(?:^|\s)_([A-Za-z][\w/]*):=(\S+)")
@@ -77,6 +83,7 @@ class _Tracer(XmlLoader):  # type: ignore[misc]
         self.ignore_unset_args = False
         self.files: dict[str, str] = {}
         self.nodes: list[dict[str, Any]] = []
+        self.programs: dict[tuple[str, str], None] = {}
         self.of_nodes: list[tuple[str, dict[str, Any]]] = []
         self._via: list[str] = []
         self._tag_place: dict[str, Any] | None = None
@@ -158,9 +165,14 @@ class _Tracer(XmlLoader):  # type: ignore[misc]
             place["substituted"] = options.get("subst_function") is not None
             if file_:
                 place["yaml"] = file_
-                with contextlib.suppress(OSError):
-                    data = Path(file_).read_bytes()
-                    self.files[file_] = hashlib.sha256(data).hexdigest()
+        data = b""
+        if file_:
+            with contextlib.suppress(OSError):
+                data = Path(file_).read_bytes()
+                self.files[file_] = hashlib.sha256(data).hexdigest()
+        else:
+            data = str(text[0] if text else "").encode()
+        _check_yaml(data)
         super().load_rosparam(context, ros_config, cmd, param, file_, *text, **options)
 
     def _rosparam_tag(
@@ -192,6 +204,8 @@ class _Tracer(XmlLoader):  # type: ignore[misc]
             place = {"path": here["file"], "lineno": here["lineno"], "offset": here["offset"]}
             what = {"name": full, "package": node.package, "program": node.type}
             self.nodes.append({**what, **place})
+            if not node.machine_name:
+                self.programs[node.package, node.type] = None
             # The node sets these itself when it starts, so they come after all others.
             for name, value in _PRIVATE.findall(node.args or ""):
                 written = f"_{name}:={value}"
@@ -261,8 +275,50 @@ def _guessed(text: str) -> bool | int | float | str:
     return {"true": True, "false": False}.get(text.lower(), text)
 
 
+def _absent(programs: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
+    """The programs that are not there."""
+    packages, absent = RosPack(), []
+    for package, program in programs:
+        try:
+            if find_node(package, program, packages):
+                continue
+        except (ResourceNotFound, OSError):
+            pass
+        absent.append((package, program))
+    return absent
+
+
+def _check_yaml(data: bytes) -> None:
+    """Check that aliases do not multiply the values of a YAML text beyond all use.
+
+    Raises:
+        ValueError: they do.
+    """
+    sizes: dict[int, int] = {}
+
+    def size(node: yaml.Node) -> int:
+        if id(node) not in sizes:
+            # One that contains itself ends here.
+            sizes[id(node)] = 1
+            below = node.value if isinstance(node, yaml.CollectionNode) else []
+            parts = [part for one in below for part in (one if isinstance(one, tuple) else (one,))]
+            sizes[id(node)] += sum(size(part) for part in parts)
+        return sizes[id(node)]
+
+    try:
+        documents = list(yaml.compose_all(data, yaml.SafeLoader))
+        most = max((size(one) for one in documents if one is not None), default=0)
+    except (yaml.YAMLError, RecursionError, ValueError):
+        # roslaunch says what is wrong.
+        return
+    if most > _MOST_VALUES:
+        raise ValueError(f"YAML with more than {_MOST_VALUES:,} values, with its aliases")
+
+
 def main(argv: list[str]) -> None:
     """See the module; status 1 and a line on standard error where roslaunch would not start."""
+    # A kilobyte of YAML aliases can stand for billions of values.
+    resource.setrlimit(resource.RLIMIT_AS, (_MOST_MEMORY, _MOST_MEMORY))
     config = _Config()
     tracer = _Tracer(config)
     try:
@@ -271,11 +327,14 @@ def main(argv: list[str]) -> None:
             tracer.load(argv[0], config, argv=argv, verbose=False)
     except (RLException, ResourceNotFound, ValueError, OSError, KeyError) as error:
         raise SystemExit(" ".join(f"{error}".split())) from error
+    except MemoryError:
+        raise SystemExit(f"it needs more than {_MOST_MEMORY >> 20} MB of memory") from None
     for name, place in tracer.of_nodes:
         config.settings.setdefault(name, []).append(place)
     answer = {
         "parameters": config.settings,
         "nodes": tracer.nodes,
+        "absent": _absent(tracer.programs),
         "files": tracer.files,
     }
     # What JSON has no form for (binary data, dates) is null.

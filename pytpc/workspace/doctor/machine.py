@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import tempfile
@@ -16,38 +17,33 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from pytpc.base.paths import (
-    BUILD_TOOLS,
+    COLCON_EXTENSIONS,
     ROS_PACKAGES,
     ROS_PREFIXES,
     SYSTEM_PATH,
+    build_tools,
+    clang_release,
+    conda_prefix,
     how_to_install,
     is_checkout,
+    other_clangs,
     prefix,
     ros_places,
     search_path,
     sourced_prefixes,
+    unsuited_clangs,
 )
 from pytpc.workspace.doctor.finding import Finding, error, note, warning
 
 # cmake_language(DEFER), by which tpc.cmake sees the finished targets, came with 3.19.
 CMAKE_NEEDED = (3, 19)
-RELEASE_TOOLS = ("clang-19", "clang++-19", "ld.lld-19", "llvm-ar-19", "llvm-ranlib-19")
-COLCON_EXTENSIONS = (
-    "colcon-bash",
-    "colcon-cmake",
-    "colcon-metadata",
-    "colcon-output",
-    "colcon-package-selection",
-    "colcon-parallel-executor",
-    "colcon-recursive-crawl",
-    "colcon-ros",
-)
 MODULES: Mapping[str, str] = {"em": "python3-empy", "catkin_pkg": "python3-catkin-pkg"}
 # Flags with which the compiler instruments the code by itself, and those of static programs.
 UNSUITED = re.compile(
     r"-fsanitize=[^\s;\")]+|--coverage\b|-ftest-coverage\b|-fcoverage-mapping\b"
     r"|-fprofile-[^\s;\")]+|(?<![\w-])-static(?:-pie)?(?![\w-])"
 )
+_SYSTEM_PROGRAMS = Path("/usr/bin").resolve()
 _MIB = 1024 * 1024
 _PARTS = (
     "lib/tpc/TpcPasses.so",
@@ -58,6 +54,8 @@ _PARTS = (
     "share/tpc/rules/ros1.json",
     "bin/tpc-clang++",
 )
+# What the log library loads in a node of ROS 1.
+_ROS1_PART = "lib/libtpc_log_ros1.so"
 _PATIENCE_S = 60
 # What /usr/bin/python3 is asked: a dictionary with "modules" and "colcon".
 _QUESTION = """
@@ -94,7 +92,10 @@ class Machine:
     versions of what /usr/bin/python3 can import, ``extensions`` those of colcon that it has;
     ``missing_parts`` files of TPC's installed half that are not there; ``trial`` what went wrong
     when a small program was built with it; ``ros`` names and prefixes of the ROS packages that a
-    build needs; spaces are in bytes; ``setup`` is what installs TPC's own half.
+    build needs; spaces are in bytes; ``setup`` is what installs TPC's own half. ``release`` is
+    that of the clang in use, ``other_clangs`` are those that TPC does not work with; ``unlinked``
+    are libraries that the log library needs in a node of ROS 1 and that are not found; ``conda`` is
+    the environment of conda that is active.
     """
 
     programs: Mapping[str, InstalledProgram] = field(default_factory=dict)
@@ -112,6 +113,10 @@ class Machine:
     memory_free: int = 1 << 40
     setup: str = "make setup"
     ccache: Mapping[str, str] = field(default_factory=dict)
+    release: str = "19"
+    other_clangs: tuple[str, ...] = ()
+    unlinked: tuple[str, ...] = ()
+    conda: Path | None = None
 
 
 def look_at_machine(folder: Path) -> Machine:
@@ -122,13 +127,14 @@ def look_at_machine(folder: Path) -> Machine:
     """
     programs = {
         name: InstalledProgram(Path(path), version_of(output_of([path, "--version"])))
-        for name in BUILD_TOOLS
+        for name in build_tools()
         if (path := shutil.which(name, path=search_path())) is not None
     }
     python = shutil.which("python3")
     modules, extensions = _ask_python()
     missing = tuple(part for part in _PARTS if not (prefix() / part).exists())
     told = sourced_prefixes()
+    release = clang_release()
     disk = folder.absolute()
     while not disk.exists():
         disk = disk.parent
@@ -139,7 +145,7 @@ def look_at_machine(folder: Path) -> Machine:
         extensions=extensions,
         prefix=prefix(),
         missing_parts=missing,
-        trial=None if missing or "clang++-19" not in programs else _try_build(),
+        trial=None if missing or f"clang++-{release}" not in programs else _try_build(),
         ros=ros_places([*told, *ROS_PREFIXES]),
         environment=dict(os.environ),
         folders=frozenset(path for path in told if path.is_dir()),
@@ -148,6 +154,10 @@ def look_at_machine(folder: Path) -> Machine:
         memory_free=_free_memory(Path("/proc/meminfo")),
         setup="make setup" if is_checkout() else how_to_install(),
         ccache=ccache_settings(output_of(["ccache", "--show-config"])),
+        release=release,
+        other_clangs=tuple(other_clangs()),
+        unlinked=_unlinked(prefix() / _ROS1_PART),
+        conda=conda_prefix(),
     )
 
 
@@ -161,6 +171,16 @@ def ccache_settings(said: str) -> dict[str, str]:
     """The settings that ``ccache --show-config`` tells, each line as ``(origin) name = value``."""
     lines = re.findall(r"^\([^)]*\) (\w+) = (.*)$", said, re.MULTILINE)
     return dict(lines)
+
+
+def _unlinked(library: Path) -> tuple[str, ...]:
+    """What a library needs and does not find; itself where it was not built."""
+    return unlinked_in(output_of(["ldd", str(library)])) if library.exists() else (library.name,)
+
+
+def unlinked_in(said: str) -> tuple[str, ...]:
+    """The libraries that ``ldd`` does not find."""
+    return tuple(re.findall(r"^\s*(\S+) => not found$", said, re.MULTILINE))
 
 
 def _ask_python() -> tuple[Mapping[str, str], frozenset[str]]:
@@ -226,13 +246,18 @@ def _run(command: Sequence[str], cwd: str | None = None) -> subprocess.Completed
         return None
 
 
-def check_machine(machine: Machine) -> list[Finding]:
-    """All findings about a machine, in the order in which they are best mended."""
+def check_machine(machine: Machine, *, for_ros1: bool = True) -> list[Finding]:
+    """All findings about a machine, in the order in which they are best mended.
+
+    Args:
+        machine: what was seen.
+        for_ros1: false if only packages of ROS 2 are to be built.
+    """
     return [
         *_programs(machine),
         *_python(machine),
         *_installed(machine),
-        *_ros(machine),
+        *_ros(machine, for_ros1=for_ros1),
         *_environment(machine),
         *_space(machine),
         *_ccache(machine),
@@ -240,19 +265,21 @@ def check_machine(machine: Machine) -> list[Finding]:
 
 
 def _programs(machine: Machine) -> Iterator[Finding]:
-    for name, packages in BUILD_TOOLS.items():
+    release = machine.release
+    for name, packages in build_tools().items():
         if name not in machine.programs:
-            yield error(f"{name} is not installed", mend=f"apt-get install {packages}")
+            others = unsuited_clangs(machine.other_clangs) if name == f"clang-{release}" else ""
+            yield error(f"{name} is not installed{others}", mend=f"apt-get install {packages}")
     versions = {
-        name: machine.programs[name].version
-        for name in RELEASE_TOOLS
-        if name in machine.programs and machine.programs[name].version
+        name: program.version
+        for name, program in machine.programs.items()
+        if name.endswith(f"-{release}") and program.version
     }
     if len(set(versions.values())) > 1:
         told = ", ".join(f"{name} {_dotted(version)}" for name, version in versions.items())
         yield warning(
             f"compiler, linker and archiver come from different releases: {told}",
-            mend="apt-get install --only-upgrade clang-19 lld-19 llvm-19",
+            mend=f"apt-get install --only-upgrade clang-{release} lld-{release} llvm-{release}",
         )
     cmake = machine.programs.get("cmake")
     if cmake is not None and cmake.version and cmake.version < CMAKE_NEEDED:
@@ -281,12 +308,26 @@ def _python(machine: Machine) -> Iterator[Finding]:
             f"empy {machine.modules['em']} is too new for catkin's generators",
             mend="/usr/bin/python3 -m pip uninstall empy && apt-get install python3-empy",
         )
-    if machine.python is not None and machine.python != Path("/usr/bin/python3"):
+    if machine.conda is not None:
         yield note(
-            "the first python3 on PATH is not the system's; `pytpc build` does not use it,"
-            " but CMake does",
+            "an environment of conda is active; `pytpc build` leaves its programs and libraries"
+            " out, but other builds and nodes may use them",
+            machine.conda,
+            "conda deactivate",
+        )
+    elif machine.python is not None and machine.python.parent.resolve() != _SYSTEM_PROGRAMS:
+        folder = machine.python.parent
+        owner, mend = "not the system's", 'export PATH="/usr/bin:$PATH"'
+        if folder.name == "shims":
+            owner = "pyenv's"
+        elif machine.environment.get("VIRTUAL_ENV") == str(folder.parent):
+            owner, mend = "that of a virtual environment", "deactivate"
+        yield note(
+            f"the first python3 on PATH is {owner}; `pytpc build`, `record` and `run` use"
+            " /usr/bin/python3 all the same, but catkin_make, cmake and nodes that you start"
+            " yourself in this terminal use the first one, which may have no ROS",
             machine.python,
-            "cmake -DPYTHON_EXECUTABLE=/usr/bin/python3 ...",
+            mend,
         )
 
 
@@ -297,6 +338,12 @@ def _installed(machine: Machine) -> Iterator[Finding]:
             machine.prefix,
             "unset TPC_PREFIX" if "TPC_PREFIX" in machine.environment else machine.setup,
         )
+    elif machine.unlinked and "roscpp" in machine.ros:
+        yield error(
+            f"the log library was built for another ROS: {', '.join(machine.unlinked)} not found",
+            machine.prefix / _ROS1_PART,
+            _build_log_library(machine.prefix, machine.release),
+        )
     elif machine.trial is not None:
         yield error(
             f"a small program cannot be built with TPC: {machine.trial}",
@@ -305,9 +352,19 @@ def _installed(machine: Machine) -> Iterator[Finding]:
         )
 
 
-def _ros(machine: Machine) -> Iterator[Finding]:
+def _build_log_library(prefix: Path, release: str) -> str:
+    """The command; its compiler is one that is needed anyway, as there may be no g++."""
+    place = shlex.quote(str(prefix))
+    compilers = f"-DCMAKE_C_COMPILER=clang-{release} -DCMAKE_CXX_COMPILER=clang++-{release}"
+    return (
+        f"build=$(mktemp -d) && cmake -S {place}/share/tpc/runtime_log -B $build {compilers}"
+        f" -DCMAKE_INSTALL_PREFIX={place} && cmake --build $build --target install"
+    )
+
+
+def _ros(machine: Machine, *, for_ros1: bool) -> Iterator[Finding]:
     absent = [name for name in ("catkin", "roscpp") if name not in machine.ros]
-    if absent:
+    if absent and for_ros1:
         yield warning(
             f"{' and '.join(absent)} of ROS 1 not found: catkin packages cannot be built",
             mend=f"apt-get install {ROS_PACKAGES}",
@@ -340,9 +397,9 @@ def _ros(machine: Machine) -> Iterator[Finding]:
 def _environment(machine: Machine) -> Iterator[Finding]:
     for name in ("CC", "CXX"):
         value = machine.environment.get(name, "")
-        if value and not re.search(r"clang(\+\+)?(-19)?$", value):
+        if value and not re.search(rf"clang(\+\+)?(-{machine.release})?$", value):
             yield note(
-                f"{name}={value} is ignored: TPC's CMake file chooses clang 19",
+                f"{name}={value} is ignored: TPC's CMake file chooses clang {machine.release}",
                 name,
                 f"unset {name}",
             )

@@ -9,7 +9,7 @@ import os
 import re
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from pytpc.base.errors import InputError, WorkspaceError
@@ -18,6 +18,7 @@ from pytpc.workspace.cmake_block import patch_text, restore_text
 from pytpc.workspace.cmake_syntax import UTF8_BOM, Kind, commands, find_fault, tokens
 from pytpc.workspace.doctor.finding import Finding, error, note, warning
 from pytpc.workspace.doctor.machine import UNSUITED, output_of
+from pytpc.workspace.doctor.ros2 import KnownRos2, check_ros2, is_ros2_alone, look_at_ros2
 from pytpc.workspace.packages import (
     MANIFEST,
     Manifest,
@@ -31,7 +32,7 @@ _COMMENTS = (Kind.LINE_COMMENT, Kind.BRACKET_COMMENT)
 _CMAKE_BUILD_TYPES = ("catkin", "cmake", "ament_cmake")
 
 # clang, or CMake's own choice, which tpc.cmake replaces by clang.
-_REPLACED = re.compile(r"clang(\+\+)?-19$|(^|/)c(c|\+\+)$")
+_REPLACED = re.compile(r"clang(\+\+)?-\d+$|(^|/)c(c|\+\+)$")
 
 
 _CACHE = "CMakeCache.txt"
@@ -75,13 +76,18 @@ class SeenWorkspace:
     odd_names: Sequence[str] = ()
     is_writable: bool = True
 
+    @property
+    def is_for_ros2_alone(self) -> bool:
+        """Whether there are packages of ROS 2, and none of ROS 1."""
+        return {manifest.ros for manifest in _manifests(self)} - {""} == {"2"}
+
 
 @dataclass(frozen=True, slots=True)
 class Known:
     """The packages and builds that TPC knows outside of the workspace.
 
     ``packages`` have a package.xml in a prefix that CMake looks in; ``debian`` are the packages
-    that apt offers, ``installed`` those that dpkg has.
+    that apt offers, ``installed`` those that dpkg has; ``ros2`` is what is known of ROS 2.
     """
 
     packages: frozenset[str]
@@ -89,6 +95,7 @@ class Known:
     installed: frozenset[str]
     cmake_file: str
     own_builds: Path
+    ros2: KnownRos2 = field(default_factory=KnownRos2)
 
 
 def look_at_workspace(workspace: Path) -> SeenWorkspace:
@@ -116,13 +123,14 @@ def look_at_known(workspace: Path) -> Known:
     shares = [path for one in prefixes for path in (one / "share").glob(f"*/{MANIFEST}")]
     installed = output_of(["dpkg-query", "-W", "-f", "${Package} ${db:Status-Status}\n"])
     return Known(
-        packages=frozenset(path.parent.name for path in shares),
+        packages=frozenset(path.parent.name for path in shares if not is_ros2_alone(path.parent)),
         debian=frozenset(output_of(["apt-cache", "pkgnames"]).split()),
         installed=frozenset(
             line.split()[0] for line in installed.splitlines() if line.endswith(" installed")
         ),
         cmake_file=str(prefix() / "share/tpc/cmake/tpc.cmake"),
         own_builds=workspace.absolute() / OWN_FOLDER,
+        ros2=look_at_ros2(),
     )
 
 
@@ -190,6 +198,7 @@ def check_workspace(seen: SeenWorkspace, known: Known) -> list[Finding]:
         *_names(seen),
         *_cycles(seen),
         *_dependencies(seen, known),
+        *check_ros2(seen.folder, _manifests(seen), known.ros2, known.debian, known.installed),
         *_builds(seen, known),
     ]
     if not seen.is_writable:
@@ -303,7 +312,7 @@ def _cycles(seen: SeenWorkspace) -> Iterator[Finding]:
 def _dependencies(seen: SeenWorkspace, known: Known) -> Iterator[Finding]:
     own = {manifest.name for manifest in _manifests(seen)}
     users: dict[tuple[str, bool], list[str]] = defaultdict(list)
-    for manifest in _manifests(seen):
+    for manifest in (each for each in _manifests(seen) if each.ros != "2"):
         for name in manifest.build_depends:
             users[name, True].append(manifest.name)
         for name in manifest.run_depends:

@@ -37,7 +37,7 @@ public:
     Out = create_publisher<std_msgs::msg::Number>("out", 1);
   }
   void changed(const rclcpp::Parameter &New) {
-    // CHECK-DAG: rclcpp::Parameter::as_double '<dynamic>' double default null in
+    // CHECK-DAG: rclcpp::Parameter::as_double 'j' double default null in
     if (New.get_name() == "j")
       J = New.as_double();
     // CHECK-DAG: get_parameter 'k' double default null in
@@ -72,7 +72,7 @@ public:
     // CHECK-DAG: parameter 'i' relation > {{.*}} at [[#@LINE+1]]:11
     if (V > Kept.as_double())
       Out->publish(M);
-    // CHECK-DAG: parameter '<dynamic>' relation > {{.*}} at [[#@LINE+1]]:11
+    // CHECK-DAG: parameter 'j' relation > {{.*}} at [[#@LINE+1]]:11
     if (V > J)
       Out->publish(M);
     // CHECK-DAG: parameter 'k' relation > {{.*}} at [[#@LINE+1]]:11

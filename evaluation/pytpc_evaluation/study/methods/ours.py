@@ -14,7 +14,7 @@ def tpc(case: Case) -> Verdict:
 
 def tpc_reference(case: Case) -> Verdict:
     """With the thresholds of a good run, where there is one, and what they would have changed."""
-    return verdict(diagnose_beside(case.recording, case.static_info, reference=case.reference))
+    return verdict(diagnose_beside(case.recording, case.static_info, references=case.references))
 
 
 def tpc_changes(case: Case) -> Verdict:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
-from datetime import UTC, datetime
+from datetime import datetime, timezone
 from hashlib import sha256
 from pathlib import Path
 
@@ -57,7 +57,7 @@ def save_judging(folder: Path, methods: Iterable[tuple[str, str]], missions: int
         InputError: what is there cannot be read.
         TpcError: the file cannot be written.
     """
-    now = datetime.now(UTC).isoformat(timespec="seconds")
+    now = datetime.now(timezone.utc).isoformat(timespec="seconds")
     digest = sha256(json.dumps(sorted(methods)).encode()).hexdigest()
     found = [*load_judgings(folder), Judging(now, digest, missions)]
     text = json.dumps([asdict(one) for one in found], indent=1)

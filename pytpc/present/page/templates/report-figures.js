@@ -3,6 +3,7 @@ const tpcFigures = (() => {
   "use strict";
   const MOST = 2400; // points of a line: a few for each column of pixels
   const DOTS = 160; // single evaluations are dots while there are no more of them
+  const HALF_BOX = 0.1; // of a summary's results, above and below
   const LARGEST = 1e150; // what Bokeh can still subtract
   const MARK_DASH = { I: [], II: [6, 3], "": [2, 2] };
   const painted = [];
@@ -54,7 +55,9 @@ const tpcFigures = (() => {
       const values = unpacked(kept.lv, Float64Array);
       kept.lt = longer(unpacked(kept.lt, Float64Array), mission.seconds);
       kept.lv = longer(values, values.length ? values[values.length - 1] : NaN);
-      kept.kept = kept.kept.map((column) => unpacked(column, Float64Array));
+      for (const name of ["kept", "results"]) {
+        kept[name] = kept[name].map((column) => Array.from(unpacked(column, Float64Array)));
+      }
     }
     return kept;
   };
@@ -256,7 +259,7 @@ const tpcFigures = (() => {
     const range = new Bokeh.Range1d({ start: home[0], end: home[1], bounds: whole });
     const scale = new Bokeh.Range1d({ start: card.low, end: card.high });
     const common = { x_range: range, min_border_left: 64, min_border_right: 12 };
-    const upper = withoutTimes(figureOf({ ...common, height: 230, y_range: scale }));
+    const upper = withoutTimes(figureOf({ ...common, height: 230, y_range: scale, y_axis_label: card.label }));
     const lower = figureOf({
       ...common, height: 84, y_range: new Bokeh.Range1d({ start: -0.35, end: 1.35 }),
       x_axis_label: "seconds since the recording began",
@@ -285,6 +288,7 @@ const tpcFigures = (() => {
         { hatch_color: "would" },
       ));
     }
+    const size = card.high - card.low;
     const value = card.culprit ? "culprit" : "value";
     const sources = {
       line: new Bokeh.ColumnDataSource({ data: { x: [], y: [] } }),
@@ -299,21 +303,37 @@ const tpcFigures = (() => {
       renderer.nonselection_glyph = null;
       paint(renderer.glyph, properties);
     };
-    if (card.kept) {
-      // Of what is only in summaries the outermost values are known.
-      const [left, right, bottom, top] = series.kept.map((column) => Array.from(column));
+    // Of what is only in summaries the outermost values are known, and which results there were.
+    const boxes = (figure, left, right, bottom, top) => {
       const glyph = new Bokeh.Quad({
         left: { field: "left" }, right: { field: "right" }, bottom: { field: "bottom" }, top: { field: "top" },
         fill_alpha: 0.3,
       });
-      draw(upper, glyph, new Bokeh.ColumnDataSource({ data: { left, right, bottom, top } }),
+      draw(figure, glyph, new Bokeh.ColumnDataSource({ data: { left, right, bottom, top } }),
         { fill_color: value, line_color: value });
+    };
+    if (card.kept) {
+      const [left, right, ...ends] = series.kept;
+      // Bokeh does not draw what ends too far outside of the plot.
+      const [bottom, top] = ends.map((end) =>
+        card.beyond ? end.map((y) => Math.min(Math.max(y, card.low - size), card.high + size)) : end);
+      boxes(upper, left, right, bottom, top);
     }
+    const [first, last, least, greatest] = series.results;
+    boxes(lower, first, last, least.map((y) => y - HALF_BOX), greatest.map((y) => y + HALF_BOX));
     draw(upper, new Bokeh.Line({ ...at, line_width: 1.6 }), sources.line, { line_color: value });
     draw(upper, new Bokeh.Step({ ...at, mode: "after", line_width: 1.8, line_dash: [8, 3] }),
       sources.limit, { line_color: "limit" });
     draw(upper, new Bokeh.Scatter({ ...at, size: 5 }), sources.yes, { fill_color: value, line_color: value });
     draw(upper, new Bokeh.Scatter({ ...at, size: 5 }), sources.no, { fill_color: "paper", line_color: value });
+    card.edges.forEach((times, above) => {
+      // Where compared values are beyond the plot, whose scale is fixed then.
+      const y = times.map(() => (above ? card.high - size / 40 : card.low + size / 40));
+      const edge = new Bokeh.Scatter({
+        ...at, size: 9, marker: { value: above ? "triangle" : "inverted_triangle" },
+      });
+      draw(upper, edge, new Bokeh.ColumnDataSource({ data: { x: times, y } }), { fill_color: value, line_color: value });
+    });
     draw(lower, new Bokeh.Step({ ...at, mode: "after", line_width: 1.6 }), sources.result, { line_color: value });
     if (card.suggested !== null) {
       upper.add_layout(paint(

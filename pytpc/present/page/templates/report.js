@@ -104,13 +104,102 @@
     });
   }
 
+  // Several missions are tabs: one is shown, the arrows go to the next one, and a link to anything
+  // in a mission shows that one.
+  const tabs = [...document.querySelectorAll(".tabs a")];
+  const choose = (tab) => {
+    for (const other of tabs) {
+      const own = other === tab;
+      other.setAttribute("aria-selected", String(own));
+      other.tabIndex = own ? 0 : -1;
+      document.getElementById(other.dataset.panel).classList.toggle("away", !own);
+    }
+  };
+  const go = (tab) => {
+    choose(tab);
+    history.replaceState(null, "", tab.hash);
+  };
+  if (tabs.length) {
+    tabs[0].parentElement.setAttribute("role", "tablist");
+    tabs.forEach((tab, place) => {
+      tab.setAttribute("role", "tab");
+      tab.setAttribute("aria-controls", tab.dataset.panel);
+      const panel = document.getElementById(tab.dataset.panel);
+      panel.setAttribute("role", "tabpanel");
+      tab.addEventListener("click", (event) => {
+        event.preventDefault();
+        go(tab);
+      });
+      tab.addEventListener("keydown", (event) => {
+        const last = tabs.length - 1;
+        const to = {
+          ArrowLeft: place ? place - 1 : last, ArrowRight: place < last ? place + 1 : 0,
+          Home: 0, End: last, " ": place,
+        }[event.key];
+        if (to === undefined || event.ctrlKey || event.metaKey || event.altKey) return;
+        event.preventDefault();
+        go(tabs[to]);
+        tabs[to].focus();
+      });
+    });
+    choose(tabs[0]);
+  }
+
+  // A term is explained under the pointer, at the focus, and where it is tapped.
+  const tip = document.createElement("div");
+  tip.className = "tip";
+  tip.setAttribute("role", "tooltip");
+  tip.hidden = true;
+  document.body.append(tip);
+  const hide = () => { tip.hidden = true; };
+  const explain = (term) => {
+    tip.textContent = document.getElementById(term.hash.slice(1)).textContent;
+    tip.hidden = false;
+    const at = term.getBoundingClientRect();
+    const below = at.bottom + 6 + tip.offsetHeight <= innerHeight;
+    tip.style.left = `${Math.max(8, Math.min(at.left, root.clientWidth - tip.offsetWidth - 8))}px`;
+    tip.style.top = `${below ? at.bottom + 6 : Math.max(0, at.top - 6 - tip.offsetHeight)}px`;
+  };
+  for (const term of document.querySelectorAll(".term")) {
+    for (const kind of ["pointerenter", "focus"]) term.addEventListener(kind, () => explain(term));
+    for (const kind of ["pointerleave", "blur"]) term.addEventListener(kind, hide);
+    term.addEventListener("click", (event) => {
+      event.preventDefault();
+      explain(term);
+    });
+  }
+  addEventListener("keydown", (event) => { if (event.key === "Escape") hide(); });
+  addEventListener("scroll", hide, { passive: true });
+  addEventListener("pointerdown", (event) => { if (!event.target.closest(".term")) hide(); });
+
+  for (const button of document.querySelectorAll("button.copy")) {
+    // A page from a file is no secure context everywhere: there the text is only selected.
+    button.hidden = false;
+    button.addEventListener("click", async () => {
+      getSelection().selectAllChildren(button.previousElementSibling);
+      try {
+        await navigator.clipboard.writeText(button.previousElementSibling.textContent);
+        button.textContent = "Copied";
+      } catch {
+        button.textContent = "Selected";
+      }
+    });
+  }
+
   // A link leads to what is folded away, and nobody prints what is.
   const reveal = () => {
     const target = location.hash.length > 1 && document.getElementById(location.hash.slice(1));
     if (!target) return;
+    const panel = target.closest("section.mission");
+    if (panel && tabs.length) choose(tabs.find((tab) => tab.dataset.panel === panel.id));
     for (let at = target; at; at = at.parentElement) if (at.localName === "details") at.open = true;
     target.scrollIntoView();
   };
+  // The same link twice changes no address.
+  addEventListener("click", (event) => {
+    const link = event.target.closest("a[href^='#']");
+    if (link && link.hash === location.hash && !event.defaultPrevented) reveal();
+  });
   addEventListener("hashchange", reveal);
   const opened = [];
   addEventListener("beforeprint", () => {

@@ -4,11 +4,14 @@
 #ifndef TPC_TEST_RCLCPP_H
 #define TPC_TEST_RCLCPP_H
 
+#include <chrono>
 #include <cstdint>
+#include <functional>
 #include <future>
 #include <memory>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 namespace std_msgs {
 namespace msg {
@@ -24,6 +27,10 @@ template <class A> struct ParameterDescriptor_ {
   std::string description;
 };
 using ParameterDescriptor = ParameterDescriptor_<std::allocator<void>>;
+struct SetParametersResult {
+  bool successful = false;
+  std::string reason;
+};
 } // namespace msg
 } // namespace rcl_interfaces
 
@@ -58,6 +65,7 @@ public:
   int64_t as_int() const;
   double as_double() const;
   const std::string &as_string() const;
+  const std::vector<double> &as_double_array() const;
   template <typename T> decltype(auto) get_value() const {
     return Value.get<T>();
   }
@@ -67,10 +75,55 @@ private:
   ParameterValue Value;
 };
 
+class Duration {
+public:
+  Duration(int32_t Seconds, uint32_t Nanoseconds);
+  explicit Duration(std::chrono::nanoseconds Nanoseconds);
+  Duration(const Duration &Other);
+  virtual ~Duration() = default;
+  Duration &operator=(const Duration &Other);
+  bool operator<(const Duration &Other) const;
+  bool operator>(const Duration &Other) const;
+  Duration operator+(const Duration &Other) const;
+  Duration &operator+=(const Duration &Other);
+  Duration operator-(const Duration &Other) const;
+  Duration operator*(double Factor) const;
+  int64_t nanoseconds() const;
+  double seconds() const;
+  static Duration from_seconds(double Seconds);
+  static Duration from_nanoseconds(int64_t Nanoseconds);
+
+private:
+  int64_t Held;
+};
+
+class Time {
+public:
+  explicit Time(int64_t Nanoseconds = 0, int Clock = 1);
+  Time(const Time &Other);
+  virtual ~Time();
+  Time &operator=(const Time &Other);
+  bool operator<(const Time &Other) const;
+  bool operator>(const Time &Other) const;
+  Time operator+(const Duration &Other) const;
+  Duration operator-(const Time &Other) const;
+  int64_t nanoseconds() const;
+  double seconds() const;
+
+private:
+  int64_t Held;
+  int Clock;
+};
+
 class QoS {
 public:
   QoS(size_t Depth);
 };
+
+/// What ROS 2 publishes about a subscription itself.
+namespace topic_statistics {
+class SubscriptionTopicStatistics;
+} // namespace topic_statistics
 
 template <typename M, typename A = std::allocator<void>> class Publisher {
 public:
@@ -85,8 +138,45 @@ public:
   async_send_request(std::shared_ptr<typename S::Request> Request);
 };
 
+namespace node_interfaces {
+/// Its functions are defined in the library: the debug information of a program
+/// does not have them.
+class NodeParametersInterface {
+public:
+  using Descriptor = rcl_interfaces::msg::ParameterDescriptor;
+  virtual ~NodeParametersInterface() = default;
+  virtual const ParameterValue &
+  declare_parameter(const std::string &Name, const ParameterValue &Default,
+                    const Descriptor &Of = Descriptor(),
+                    bool IgnoreOverride = false) = 0;
+  virtual const ParameterValue &
+  declare_parameter(const std::string &Name, ParameterType Type,
+                    const Descriptor &Of = Descriptor(),
+                    bool IgnoreOverride = false) = 0;
+  virtual void undeclare_parameter(const std::string &Name) = 0;
+  virtual bool has_parameter(const std::string &Name) const = 0;
+  virtual std::vector<rcl_interfaces::msg::SetParametersResult>
+  set_parameters(const std::vector<Parameter> &All) = 0;
+  virtual rcl_interfaces::msg::SetParametersResult
+  set_parameters_atomically(const std::vector<Parameter> &All) = 0;
+  virtual std::vector<Parameter>
+  get_parameters(const std::vector<std::string> &Names) const = 0;
+  virtual Parameter get_parameter(const std::string &Name) const = 0;
+  virtual bool get_parameter(const std::string &Name,
+                             Parameter &Value) const = 0;
+};
+} // namespace node_interfaces
+
 class Node : public std::enable_shared_from_this<Node> {
 public:
+  std::shared_ptr<node_interfaces::NodeParametersInterface>
+  get_node_parameters_interface();
+  using SetCallback = std::function<rcl_interfaces::msg::SetParametersResult(
+      const std::vector<Parameter> &)>;
+  std::shared_ptr<void> add_on_set_parameters_callback(SetCallback Callback);
+  const char *get_fully_qualified_name() const;
+  bool has_parameter(const std::string &Name) const;
+  Time now() const;
   explicit Node(const std::string &Name);
   virtual ~Node();
   const ParameterValue &
@@ -137,6 +227,30 @@ public:
     return std::make_shared<Publisher<M>>();
   }
 };
+
+class ParameterEventHandler {
+public:
+  explicit ParameterEventHandler(Node *Of);
+  std::shared_ptr<void>
+  add_parameter_callback(const std::string &Name,
+                         std::function<void(const Parameter &)> Callback,
+                         const std::string &OfNode = "");
+};
+
+namespace topic_statistics {
+class SubscriptionTopicStatistics {
+public:
+  explicit SubscriptionTopicStatistics(Publisher<std_msgs::msg::Number> &Out)
+      : Out(Out) {}
+  void publish_message_and_reset_measurements(double Age) {
+    if (Age > 0)
+      Out.publish(std_msgs::msg::Number());
+  }
+
+private:
+  Publisher<std_msgs::msg::Number> &Out;
+};
+} // namespace topic_statistics
 
 } // namespace rclcpp
 

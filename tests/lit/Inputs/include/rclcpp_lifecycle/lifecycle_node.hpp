@@ -16,6 +16,7 @@ class LifecycleNode {
 public:
   explicit LifecycleNode(const std::string &Name);
   virtual ~LifecycleNode();
+  void deactivate();
   rclcpp::Parameter get_parameter(const std::string &Name) const;
   const rclcpp::ParameterValue &declare_parameter(
       const std::string &Name, const rclcpp::ParameterValue &Default,

@@ -1,0 +1,372 @@
+//===- AccessedObjects.cpp - Objects with a method that returns a value ---===//
+//
+// A read may make an object, such as an rclcpp::Parameter, and the program
+// takes the value out of it elsewhere. Which read an object comes from is
+// decided by, in this order: a test of the object's name on the way, the last
+// assignment of a local variable, where the object is stored, and the name for
+// which its function is called back.
+//
+//===----------------------------------------------------------------------===//
+#include "memory/PointsTo.h"
+#include "params/Callbacks.h"
+#include "params/Idioms.h"
+#include "params/ParameterObjects.h"
+#include "params/TextUsage.h"
+#include "params/Texts.h"
+#include "support/Names.h"
+
+#include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/ADT/StringSet.h"
+#include "llvm/IR/CFG.h"
+#include "llvm/IR/Dominators.h"
+#include "llvm/IR/IntrinsicInst.h"
+#include "llvm/IR/Module.h"
+
+#include <map>
+#include <set>
+
+using namespace llvm;
+
+namespace tpc {
+
+/// An object that a read made: the pointers to it, and where it is stored.
+struct MadeObject {
+  unsigned Read;
+  const Value *Made; ///< the object itself
+  SmallPtrSet<const Value *, 2> Pointers;
+  Locations Where;
+};
+
+/// The object that \p Read returns; null if it returns the value itself.
+static Value *objectOf(const ParameterRead &Read,
+                       const StringSet<> &ObjectClasses) {
+  if (Read.Target)
+    return ObjectClasses.contains(plainType(Read.Type)) ? Read.Target : nullptr;
+  if (!Read.Type.empty() && !ObjectClasses.contains(plainType(Read.Type)))
+    return nullptr;
+  if (Read.Call->hasStructRetAttr())
+    return Read.Call->getArgOperand(0);
+  return Read.Call->getType()->isPointerTy() ? Read.Call : nullptr;
+}
+
+/// \p Made and the objects that it is copied to: a call whose only arguments
+/// are it and another object is an assignment or a copy constructor.
+static MadeObject madeBy(unsigned Read, Value *Made, PointsTo &Pointers) {
+  MadeObject O{Read, Made, {}, Pointers.resolve(Made, false)};
+  O.Pointers.insert(Made->stripPointerCasts());
+  for (const User *U : Made->users()) {
+    const auto *Assign = dyn_cast<CallBase>(U);
+    if (!Assign || Assign->arg_size() != 2 || Assign->getArgOperand(1) != Made)
+      continue;
+    const Value *To = Assign->getArgOperand(0);
+    if (!To->getType()->isPointerTy())
+      continue;
+    O.Pointers.insert(To->stripPointerCasts());
+    append_range(O.Where, Pointers.resolve(To, false));
+  }
+  return O;
+}
+
+SmallVector<Value *, 1> valuesOf(CallBase &Call) {
+  if (!Call.getType()->isPointerTy())
+    return {&Call};
+  SmallVector<Value *, 1> Loads;
+  for (User *U : Call.users())
+    if (auto *Load = dyn_cast<LoadInst>(U))
+      Loads.push_back(Load);
+  return Loads;
+}
+
+std::string accessedType(const Function &F, const Rule &Row) {
+  if (!Row.Type.empty())
+    return Row.Type;
+  std::string Type = functionArgument(F);
+  // Not if the argument is a value.
+  if (Type.empty() || StringRef(Type).contains(')'))
+    Type = resultType(F);
+  return plainType(Type);
+}
+
+bool isObjectType(StringRef Type, const RuleMatches &Rules) {
+  return isText(Type) || Rules.isContainer(plainType(Type));
+}
+
+/// The pointer to the object that \p Call, a method, returns.
+static Value *objectFrom(CallBase &Call) {
+  if (Call.hasStructRetAttr())
+    return Call.getArgOperand(0);
+  return Call.getType()->isPointerTy() ? &Call : nullptr;
+}
+
+namespace {
+
+/// Finds the reads that the objects of one module come from.
+class ObjectFinder {
+public:
+  ObjectFinder(Module &M, ModuleAnalysisManager &AM, Texts &Known,
+               std::vector<ParameterRead> &Reads);
+
+  void run();
+
+private:
+  /// Reads by number; none if it is not known.
+  using Numbers = std::optional<SmallSetVector<unsigned, 2>>;
+  struct Accessor {
+    CallBase *Call;
+    const Rule *Row;
+  };
+
+  void makeObjects();
+  const Value *objectBehind(const Accessor &A) const;
+  std::set<std::string> namesTested(const CallBase &At, const Value *Object);
+  void addTest(const CallBase &Test, const Rule &Row, const Value *Name,
+               const CallBase &At, std::set<std::string> &Out);
+  Numbers lastAssigned(const Value *Local, const Instruction &At,
+                       unsigned Depth = 0);
+  SmallVector<unsigned, 2> storedAt(const Value *Object);
+  void addValues(unsigned Read, StringRef Type, ArrayRef<Value *> Values);
+
+  const RuleMatches &Rules;
+  PointsTo &Pointers;
+  Texts &Known;
+  std::vector<ParameterRead> &Reads;
+  UserSources Sources;
+  SmallVector<Accessor, 0> Accessors;
+  StringSet<> Classes; ///< of the objects
+  SmallVector<MadeObject, 0> Objects;
+  /// Calls that return the name of an object, and those that compare texts.
+  SmallVector<CallBase *, 0> Identities;
+  DenseMap<const Function *, std::string> CalledFor;
+  std::map<const Function *, DominatorTree> Trees;
+};
+
+} // namespace
+
+ObjectFinder::ObjectFinder(Module &M, ModuleAnalysisManager &AM, Texts &Known,
+                           std::vector<ParameterRead> &Reads)
+    : Rules(AM.getResult<RuleAnalysis>(M)),
+      Pointers(AM.getResult<PointsToAnalysis>(M)), Known(Known), Reads(Reads),
+      Sources(AM.getResult<OptionsAnalysis>(M)) {
+  forEachCall(M, Rules, Rule::Accessor, [&](CallBase &Call, const Rule &Row) {
+    Accessors.push_back({&Call, &Row});
+    Classes.insert(StringRef(Row.Function).rsplit("::").first);
+  });
+  if (Accessors.empty())
+    return;
+  forEachCall(M, Rules, Rule::Identity, [&](CallBase &Call, const Rule &) {
+    Identities.push_back(&Call);
+  });
+  forEachCall(M, Rules, Rule::Callback, [&](CallBase &Call, const Rule &Row) {
+    if (!Row.Name)
+      return;
+    std::string Name = Known.nameOf(Call, Row);
+    for (unsigned N : Row.Callbacks)
+      if (const Value *Argument = argument(Call, Row, N))
+        for (const Function *F : calledBackBy(Argument, Sources)) {
+          auto [It, New] = CalledFor.try_emplace(F, Name);
+          if (!New && It->second != Name)
+            It->second = DynamicName;
+        }
+  });
+}
+
+void ObjectFinder::makeObjects() {
+  for (unsigned N = 0; N < Reads.size(); ++N)
+    if (Value *Made = objectOf(Reads[N], Classes)) {
+      Objects.push_back(madeBy(N, Made, Pointers));
+      Reads[N].Type = "";
+      Reads[N].Target = nullptr;
+    }
+}
+
+/// The object that \p A takes a value out of: an accessor can return an object
+/// that has accessors too.
+const Value *ObjectFinder::objectBehind(const Accessor &A) const {
+  const Value *Object = objectOf(*A.Call, *A.Row);
+  while (const auto *Outer = dyn_cast_or_null<CallBase>(Object)) {
+    const Rule *Row = Rules.match(*Outer);
+    if (!Row || Row->Kind != Rule::Accessor)
+      break;
+    Object = objectOf(*Outer, *Row);
+  }
+  return Object ? Object->stripPointerCasts() : nullptr;
+}
+
+/// Adds the text that \p Test, described by \p Row, compares \p Name with, if
+/// \p At is only reached where the two are equal.
+void ObjectFinder::addTest(const CallBase &Test, const Rule &Row,
+                           const Value *Name, const CallBase &At,
+                           std::set<std::string> &Out) {
+  bool IsEqual = Row.Relation == "==";
+  if ((!IsEqual && Row.Relation != "!=") || Test.arg_size() != 2 ||
+      Test.getFunction() != At.getFunction())
+    return;
+  const Value *Other =
+      Test.getArgOperand(Test.getArgOperand(0) == Name ? 1 : 0);
+  auto [It, New] = Trees.try_emplace(At.getFunction());
+  if (New)
+    It->second.recalculate(const_cast<Function &>(*At.getFunction()));
+  for (const User *U : Test.users()) {
+    const auto *Branch = dyn_cast<BranchInst>(U);
+    if (!Branch || !Branch->isConditional())
+      continue;
+    BasicBlockEdge Taken(Branch->getParent(),
+                         Branch->getSuccessor(IsEqual ? 0 : 1));
+    if (It->second.dominates(Taken, At.getParent()))
+      Out.insert(Known.textAt(Other, Test));
+  }
+}
+
+/// The names with which the name of \p Object was compared on every way to
+/// \p At.
+std::set<std::string> ObjectFinder::namesTested(const CallBase &At,
+                                                const Value *Object) {
+  std::set<std::string> Found;
+  for (const CallBase *Identity : Identities) {
+    const Rule *Row = Rules.match(*Identity);
+    const Value *Of = objectOf(*Identity, *Row);
+    if (Identity->getFunction() != At.getFunction() || !Of ||
+        !isSameVariable(Of->stripPointerCasts(), Object))
+      continue;
+    // The name itself, and the strings that are copies of it.
+    SmallVector<const Value *, 2> Names{Identity};
+    if (Identity->hasStructRetAttr())
+      Names.front() = Identity->getArgOperand(0);
+    for (unsigned N = 0; N < Names.size(); ++N)
+      for (const User *U : Names[N]->users()) {
+        const auto *Call = dyn_cast<CallBase>(U);
+        const Rule *Does = Call ? Rules.match(*Call) : nullptr;
+        if (!Does || Does->Kind != Rule::Text)
+          continue;
+        if (Does->Relation != "copy")
+          addTest(*Call, *Does, Names[N], At, Found);
+        else if (N == 0 && Call->arg_size() > 1 &&
+                 Call->getArgOperand(1) == Names[N])
+          Names.push_back(Call->getArgOperand(0));
+      }
+  }
+  return Found;
+}
+
+/// The reads that gave \p Local, a local object, the value that it has at
+/// \p At.
+ObjectFinder::Numbers ObjectFinder::lastAssigned(const Value *Local,
+                                                 const Instruction &At,
+                                                 unsigned Depth) {
+  constexpr unsigned MaxDepth = 4, MaxBlocks = 500;
+  if (!isa<AllocaInst>(Local) || Depth == MaxDepth)
+    return std::nullopt;
+  SmallSetVector<unsigned, 2> Found;
+  SmallPtrSet<const BasicBlock *, 16> Seen;
+  SmallVector<const Instruction *, 8> Work;
+  auto GoAbove = [&](const BasicBlock &BB) {
+    for (const BasicBlock *Pred : predecessors(&BB))
+      if (Seen.insert(Pred).second)
+        Work.push_back(&Pred->back());
+    return !pred_empty(&BB) && Seen.size() <= MaxBlocks;
+  };
+  // True if the search on this way has ended; none if nothing is known.
+  auto Ends = [&](const CallBase &Call) -> std::optional<bool> {
+    if (isa<IntrinsicInst>(Call) ||
+        none_of(Call.args(), [&](const Use &U) { return U.get() == Local; }))
+      return false;
+    for (const MadeObject &O : Objects)
+      if (Reads[O.Read].Call == &Call && O.Made == Local) {
+        Found.insert(O.Read);
+        return true;
+      }
+    const Function *Callee = Call.getCalledFunction();
+    if (!Callee || Call.getArgOperand(0) != Local)
+      return std::nullopt;
+    if (Callee->getName().starts_with("_ZNK") ||
+        StringRef(qualifiedName(Callee->getName())).contains("::~"))
+      return false;
+    if (Call.arg_size() == 1)
+      return true; // A new object, without a value.
+    Numbers From = lastAssigned(Call.getArgOperand(1), Call, Depth + 1);
+    if (!From)
+      return std::nullopt;
+    Found.insert(From->begin(), From->end());
+    return true;
+  };
+  if (const Instruction *Above = At.getPrevNode())
+    Work.push_back(Above);
+  else if (!GoAbove(*At.getParent()))
+    return std::nullopt;
+  while (!Work.empty()) {
+    const Instruction *I = Work.pop_back_val();
+    const BasicBlock *BB = I->getParent();
+    std::optional<bool> Ended = false;
+    for (; I && !*Ended; I = I->getPrevNode())
+      if (const auto *Call = dyn_cast<CallBase>(I))
+        if (Ended = Ends(*Call); !Ended)
+          return std::nullopt;
+    if (!*Ended && !GoAbove(*BB))
+      return std::nullopt;
+  }
+  return Found.empty() ? std::nullopt : Numbers(std::move(Found));
+}
+
+/// The reads whose objects are stored where \p Object is.
+SmallVector<unsigned, 2> ObjectFinder::storedAt(const Value *Object) {
+  SmallVector<unsigned, 2> Found;
+  Locations Where = Pointers.resolve(Object, false);
+  for (const MadeObject &O : Objects)
+    if (O.Pointers.contains(Object) || any_of(Where, [&](const auto &L) {
+          return any_of(O.Where, [&](const auto &P) { return L.mayBe(P); });
+        }))
+      Found.push_back(O.Read);
+  return Found;
+}
+
+void ObjectFinder::addValues(unsigned Number, StringRef Type,
+                             ArrayRef<Value *> Values) {
+  ParameterRead &Read = Reads[Number];
+  append_range(Read.Values, Values);
+  if (Read.Type.empty())
+    Read.Type = Type;
+}
+
+void ObjectFinder::run() {
+  if (Accessors.empty())
+    return;
+  makeObjects();
+  for (const Accessor &A : Accessors) {
+    const Value *Object = objectBehind(A);
+    std::string Type = accessedType(*A.Call->getCalledFunction(), *A.Row);
+    SmallVector<Value *, 1> Values;
+    if (!isObjectType(Type, Rules))
+      Values = valuesOf(*A.Call);
+    else if (Value *Own = objectFrom(*A.Call))
+      Values.push_back(Own);
+    if (!Object || Values.empty())
+      continue;
+    auto AddRead = [&](std::string Name) {
+      Reads.push_back({A.Call, A.Row, std::move(Name), Type, nullptr, nullptr,
+                       SmallVector<Value *, 1>(Values)});
+    };
+    if (auto Names = namesTested(*A.Call, Object); !Names.empty()) {
+      for_each(Names, AddRead);
+      continue;
+    }
+    SmallVector<unsigned, 2> From;
+    if (Numbers Last = lastAssigned(Object, *A.Call))
+      From.assign(Last->begin(), Last->end());
+    else
+      From = storedAt(Object);
+    for (unsigned Number : From)
+      addValues(Number, Type, Values);
+    if (!From.empty())
+      continue;
+    auto Called = isa<Argument>(Object) ? CalledFor.find(A.Call->getFunction())
+                                        : CalledFor.end();
+    AddRead(Called == CalledFor.end() ? DynamicName : Called->second);
+  }
+}
+
+void findAccessors(Module &M, ModuleAnalysisManager &AM, Texts &Known,
+                   std::vector<ParameterRead> &Reads) {
+  ObjectFinder(M, AM, Known, Reads).run();
+}
+
+} // namespace tpc

@@ -1,0 +1,26 @@
+//===- Callbacks.h - Functions that a library calls later -----------------===//
+//
+// A row of kind Callback names arguments that are functions: lambdas,
+// std::functions and bound methods. This finds the functions of the program
+// that such an argument calls.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_CALLBACKS_H
+#define TPC_CALLBACKS_H
+
+#include "Options.h"
+#include "Rules.h"
+
+#include "llvm/ADT/SetVector.h"
+
+namespace tpc {
+
+/// The functions in user code that the function object or pointer \p Callback,
+/// an argument, calls. The first of them on each way through library code
+/// counts.
+llvm::SmallSetVector<llvm::Function *, 2>
+calledBackBy(const llvm::Value *Callback, UserSources &Sources);
+
+} // namespace tpc
+
+#endif // TPC_CALLBACKS_H

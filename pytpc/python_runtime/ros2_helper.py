@@ -1,0 +1,146 @@
+"""The thread beside a node of ROS 2: it keeps the hidden node, and lets the sinks send."""
+
+from __future__ import annotations
+
+import _thread
+import os
+import time
+from typing import TYPE_CHECKING
+
+from pytpc.python_runtime import ros2_state
+from pytpc.python_runtime.errors import warn
+from pytpc.python_runtime.ros2_link import Link
+from pytpc.python_runtime.ros2_settings import Settings
+
+if TYPE_CHECKING:
+    from pytpc.python_runtime.runtime import Runtime
+
+# How long it waits in one piece for somebody who asks for the settings.
+_LONG_S = 3600.0
+# While sinks are polled, those who ask for the settings wait so long at most.
+_ANSWER_S = 0.1
+# After a signal has shut the context down: usually the process ends now.
+_AGAIN_S = 0.5
+_END_S = 10.0
+
+
+class Helper:
+    """Not a thread of `threading`: programs count those, or wait for them."""
+
+    def __init__(self, runtime: Runtime) -> None:
+        self._runtime = runtime
+        self._settings = Settings(runtime)
+        self._process = os.getpid()
+        self._is_stopping = False
+        # Locked until the thread shall end, and until it has ended.
+        self._stop = _thread.allocate_lock()
+        self._stop.acquire()
+        self._ended = _thread.allocate_lock()
+        self._answered_at = 0.0
+        self._lost: list[Link] = []
+        self._told = ""
+        self.link: Link | None = None
+
+    def start(self) -> bool:
+        """Apply the settings of files, and start the thread; False if the system has none."""
+        self._settings.begin(ros2_state.name())
+        self._ended.acquire()
+        try:
+            _thread.start_new_thread(self._run, ())
+        except RuntimeError:
+            self._ended.release()
+            return False
+        return True
+
+    def _run(self) -> None:
+        try:
+            while not self._is_stopping and os.getpid() == self._process:
+                if self.link is not None:
+                    self._turn(self.link)
+                elif not self._opened():
+                    break
+        finally:
+            self._ended.release()
+
+    def _turn(self, link: Link) -> None:
+        """Let the sink send, and answer those who ask for the settings."""
+        try:
+            wait_s = self._runtime.poll()
+            if wait_s is None:
+                link.serve(_LONG_S)
+                return
+            now = time.monotonic()
+            if now - self._answered_at >= _ANSWER_S:
+                self._answered_at = now
+                link.serve(0)
+            self._pause(wait_s)
+        except Exception as error:
+            if link.is_open():
+                self._tell(f"the reports of {link.node_name} cannot be sent now: {error!r}")
+            else:
+                self._lose(link)
+            self._pause(_AGAIN_S)
+
+    def _tell(self, complaint: str) -> None:
+        """Warn once of the same."""
+        if complaint != self._told:
+            self._told = complaint
+            warn(complaint)
+
+    def _lose(self, link: Link) -> None:
+        """A signal has shut its context down; what it has sent may be on its way still."""
+        self._lost.append(link)
+        self.link = None
+
+    def _pause(self, seconds: float) -> None:
+        if self._stop.acquire(timeout=seconds):
+            self._stop.release()
+
+    def wake(self) -> None:
+        """The sink has changed: it may have to be polled now."""
+        if self.link is not None:
+            self.link.wake()
+
+    def _opened(self) -> bool:
+        """Join the graph; where that fails, reports go to a file."""
+        name = ros2_state.name()
+        try:
+            link = Link(name, ros2_state.domain(), self._settings.value)
+            self._settings.declare(link.node)
+        except Exception as error:
+            if not self._is_stopping:
+                self._runtime.fall_back(f"{error}" or type(error).__name__)
+            return False
+        self.link = link
+        return True
+
+    def end(self, *, send: bool) -> None:
+        """The process ends: end the thread, so that it is not within rclpy when Python ends.
+
+        What a sink still keeps is sent by its own `end`, if ``send``; in a new context, where a
+        signal has shut the other one down or the program ends as soon as it has begun.
+        """
+        self._is_stopping = True
+        if self._stop.locked():
+            self._stop.release()
+        self.wake()
+        if not self._ended.acquire(timeout=_END_S):
+            warn("the thread that sends reports hangs in ROS")
+            self.link = None
+            return
+        self._ended.release()
+        if self.link is not None and not self.link.is_open():
+            self._lose(self.link)
+        if send and self.link is None:
+            try:
+                self.link = Link(ros2_state.name(), ros2_state.domain(), None)
+            except Exception as error:
+                self._runtime.fall_back(f"{error}" or type(error).__name__)
+
+    def close(self) -> None:
+        """Leave the graph, after the last batch."""
+        for link in (*self._lost, self.link):
+            if link is not None:
+                link.close()
+        self._lost.clear()
+        self.link = None

@@ -1,0 +1,372 @@
+"""The agent: a node of ROS 2 that pytpc starts under the interpreter that has rclpy.
+
+It subscribes to raw messages, publishes bytes, and asks nodes for their parameters, as it is told
+on standard input; what it hears goes to standard output. It imports nothing of pytpc and runs on
+Python 3.8; `pipe` says what the frames are.
+"""
+
+import json
+import os
+import queue
+import sys
+import tempfile
+import threading
+import time
+from typing import Any
+
+from .message_types import class_of, definition_of
+from .pipe import TIME, Writer, read_frame
+
+LOOK_S = 0.25
+DEPTH = 5000
+PATIENCE_S = 3.0
+KINDS = {
+    1: "bool_value",
+    2: "integer_value",
+    3: "double_value",
+    4: "string_value",
+    5: "byte_array_value",
+    6: "bool_array_value",
+    7: "integer_array_value",
+    8: "double_array_value",
+    9: "string_array_value",
+}
+
+
+class Agent:
+    """The node, and what it was told to do."""
+
+    def __init__(self, writer: Any, rclpy: Any) -> None:
+        self._writer = writer
+        self._rclpy = rclpy
+        self.context = rclpy.Context()
+        rclpy.init(args=[], context=self.context)
+        from rclpy.executors import SingleThreadedExecutor
+
+        self.node = rclpy.create_node(
+            "_tpc_agent_%d" % os.getpid(),
+            context=self.context,
+            enable_rosout=False,
+            start_parameter_services=False,
+        )
+        self.executor = SingleThreadedExecutor(context=self.context)
+        self.executor.add_node(self.node)
+        self.commands: Any = queue.SimpleQueue()
+        self.wake = self.node.create_guard_condition(self._take_commands)
+        self.node.create_timer(LOOK_S, self._look)
+        self._wanted: Any = {}
+        self._subscriptions: Any = {}
+        self._by_number: Any = {}
+        self._publishers: Any = {}
+        self._clients: Any = {}
+        self._waiting: Any = {}
+        self._graph: Any = None
+        self.ended = False
+
+    def run(self) -> None:
+        """Work until told to end."""
+        self._look()
+        while not self.ended and self.context.ok():
+            self.executor.spin_once(timeout_sec=1.0)
+
+    def close(self) -> None:
+        """Leave the graph."""
+        self.executor.shutdown(timeout_sec=1.0)
+        self.node.destroy_node()
+        self._rclpy.shutdown(context=self.context)
+
+    def _take_commands(self) -> None:
+        while True:
+            try:
+                head, body = self.commands.get_nowait()
+            except queue.Empty:
+                return
+            try:
+                getattr(self, "do_" + head["op"])(head, body)
+            except Exception as error:
+                self._writer.put(
+                    {
+                        "ev": "answer",
+                        "id": head.get("id"),
+                        "error": one_line(error),
+                        "op": head["op"],
+                    }
+                )
+
+    def do_end(self, head: Any, body: Any) -> None:
+        """Send what has come, and end."""
+        for subscription in self._subscriptions.values():
+            self._drain(*subscription)
+        self.ended = True
+
+    def do_subscribe(self, head: Any, body: Any) -> None:
+        """Subscribe to a topic, as soon as its type is known."""
+        self._wanted[head["topic"]] = (head.get("type"), bool(head.get("history")))
+        self._subscribe_known(dict(self.node.get_topic_names_and_types()))
+
+    def do_drain(self, head: Any, body: Any) -> None:
+        """Send what has come, and then the answer."""
+        for subscription in self._subscriptions.values():
+            self._drain(*subscription)
+        self._writer.put({"ev": "answer", "id": head["id"]})
+
+    def do_advertise(self, head: Any, body: Any) -> None:
+        """Become a publisher of a topic."""
+        if head["topic"] not in self._publishers:
+            kind = class_of(head["type"])
+            self._publishers[head["topic"]] = self.node.create_publisher(kind, head["topic"], 100)
+        self._look()
+
+    def do_publish(self, head: Any, body: Any) -> None:
+        """Publish bytes."""
+        self._publishers[head["topic"]].publish(bytes(body))
+
+    def do_values(self, head: Any, body: Any) -> None:
+        """Ask a node for all of its parameters; the answer is a ParameterEvent."""
+        from rcl_interfaces.srv import GetParameters, ListParameters
+
+        def listed(answer: Any) -> None:
+            names = list(answer.result.names)
+            request = GetParameters.Request(names=names)
+            self._call(head, GetParameters, "get_parameters", request, lambda a: got(names, a))
+
+        def got(names: Any, answer: Any) -> None:
+            self._answer_values(head, names, answer.values)
+
+        if "names" in head:
+            names = head["names"]
+            request = GetParameters.Request(names=names)
+            self._call(head, GetParameters, "get_parameters", request, lambda a: got(names, a))
+        else:
+            self._call(head, ListParameters, "list_parameters", ListParameters.Request(), listed)
+
+    def _answer_values(self, head: Any, names: Any, values: Any) -> None:
+        from rcl_interfaces.msg import Parameter, ParameterEvent
+        from rclpy.serialization import serialize_message
+
+        event = ParameterEvent(node=head["node"])
+        for name, value in zip(names, values):
+            if value.type:
+                event.new_parameters.append(Parameter(name=name, value=value))
+        self._writer.put(
+            {"ev": "answer", "id": head["id"], "node": head["node"]}, serialize_message(event)
+        )
+
+    def do_describe(self, head: Any, body: Any) -> None:
+        """Ask a node what it says of parameters: read-only, ranges."""
+        from rcl_interfaces.srv import DescribeParameters
+
+        def described(answer: Any) -> None:
+            found = {one.name: {"read_only": one.read_only} for one in answer.descriptors}
+            self._writer.put({"ev": "answer", "id": head["id"], "descriptors": found})
+
+        request = DescribeParameters.Request(names=head["names"])
+        self._call(head, DescribeParameters, "describe_parameters", request, described)
+
+    def do_set(self, head: Any, body: Any) -> None:
+        """Set parameters of a node; the answer has for each whether it was taken, and why not."""
+        from rcl_interfaces.msg import Parameter, ParameterValue
+        from rcl_interfaces.srv import SetParameters
+
+        parameters = []
+        for name, kind, value in head["parameters"]:
+            one = ParameterValue(type=kind)
+            if kind:
+                as_bytes = [bytes([byte]) for byte in value] if kind == 5 else value
+                setattr(one, KINDS[kind], as_bytes)
+            parameters.append(Parameter(name=name, value=one))
+
+        def done(answer: Any) -> None:
+            results = [[one.successful, one.reason] for one in answer.results]
+            self._writer.put({"ev": "answer", "id": head["id"], "results": results})
+
+        request = SetParameters.Request(parameters=parameters)
+        self._call(head, SetParameters, "set_parameters", request, done)
+
+    def _call(self, head: Any, kind: Any, service: Any, request: Any, then: Any) -> None:
+        """Call a service of a node; ``then`` gets the answer, or pytpc an error."""
+        name = "%s/%s" % (head["node"], service)
+        client = self._clients.get(name)
+        if client is None:
+            client = self._clients[name] = self.node.create_client(kind, name)
+        until = time.monotonic() + head.get("patience", PATIENCE_S)
+        self._waiting[head["id"], service] = [until, client, request, then, head, None]
+        self._look_calls()
+
+    def _look_calls(self) -> None:
+        """Send the calls whose servers are there by now, and give up the others in time."""
+        for key, call in list(self._waiting.items()):
+            until, client, request, _, head, sent = call
+            if sent is None and client.service_is_ready():
+                call[5] = sent = client.call_async(request)
+                sent.add_done_callback(lambda future, key=key: self._answered(key, future))
+            elif time.monotonic() > until:
+                del self._waiting[key]
+                what = "does not answer" if sent is not None else "does not offer"
+                said = "%s %s %s" % (head["node"], what, client.srv_name)
+                self._writer.put({"ev": "answer", "id": head["id"], "error": said})
+
+    def _answered(self, key: Any, future: Any) -> None:
+        call = self._waiting.pop(key, None)
+        if call is None:
+            return
+        try:
+            call[3](future.result())
+        except Exception as error:
+            self._writer.put({"ev": "answer", "id": call[4]["id"], "error": one_line(error)})
+
+    def _look(self) -> None:
+        """See what is on the graph; tell what is new."""
+        self._take_commands()
+        self._look_calls()
+        # The hidden nodes of TPC are there for whoever asks for settings.
+        pairs = self.node.get_node_names_and_namespaces()
+        nodes = sorted({space.rstrip("/") + "/" + name for name, space in pairs})
+        own = self.node.get_fully_qualified_name()
+        topics = dict(self.node.get_topic_names_and_types())
+        graph = {
+            "ev": "graph",
+            "nodes": [name for name in nodes if name != own],
+            "topics": topics,
+            "clock": self.node.count_publishers("/clock"),
+            "subscribers": {
+                topic: publisher.get_subscription_count()
+                for topic, publisher in self._publishers.items()
+            },
+            "publishers": {
+                topic: self.node.count_publishers(topic) for topic in self._subscriptions
+            },
+        }
+        if graph != self._graph:
+            self._graph = graph
+            self._subscribe_known(topics)
+            self._writer.put(graph)
+
+    def _subscribe_known(self, topics: Any) -> None:
+        for topic, (kind, history) in list(self._wanted.items()):
+            if topic in self._subscriptions:
+                continue
+            kinds = [kind] if kind else topics.get(topic, [])
+            if kinds:
+                self._subscribe(topic, kinds[0], history)
+
+    def _subscribe(self, topic: Any, kind: Any, history: Any) -> None:
+        from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+
+        try:
+            message = class_of(kind)
+            definition = definition_of(kind)
+        except Exception as error:
+            del self._wanted[topic]
+            what = "%s: the type %s is not installed (%s)" % (topic, kind, one_line(error))
+            self._writer.put({"ev": "untaken", "topic": topic, "why": what})
+            return
+        infos = self.node.get_publishers_info_by_topic(topic)
+        best = any(one.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT for one in infos)
+        qos = QoSProfile(
+            history=HistoryPolicy.KEEP_LAST,
+            depth=DEPTH,
+            reliability=ReliabilityPolicy.BEST_EFFORT if best else ReliabilityPolicy.RELIABLE,
+            durability=DurabilityPolicy.TRANSIENT_LOCAL if history else DurabilityPolicy.VOLATILE,
+        )
+        number = len(self._subscriptions)
+        head = json.dumps({"m": number}).encode()
+        told = {"ev": "subscribed", "number": number, "topic": topic, "type": kind}
+        self._writer.put(dict(told, definition=definition))
+        subscription = self.node.create_subscription(
+            message,
+            topic,
+            lambda data, info: self._first(number, data, info),
+            qos,
+            raw=True,
+            event_callbacks=events_of(lambda count: self._lose(topic, count)),
+        )
+        self._subscriptions[topic] = (subscription, head)
+        self._by_number[number] = (subscription, head)
+
+    def _first(self, number: Any, data: Any, info: Any) -> None:
+        subscription, head = self._by_number[number]
+        self._put(head, data, info)
+        self._drain(subscription, head)
+
+    def _drain(self, subscription: Any, head: Any) -> None:
+        """Take all messages that wait: the executor would wake once for each."""
+        with subscription.handle:
+            for _ in range(DEPTH):
+                taken = subscription.handle.take_message(subscription.msg_type, True)
+                if taken is None:
+                    return
+                self._put(head, taken[0], taken[1])
+
+    def _put(self, head: Any, data: Any, info: Any) -> None:
+        stamp = info.get("source_timestamp", 0) if isinstance(info, dict) else 0
+        self._writer.put(head, TIME.pack(stamp) + bytes(data))
+
+    def _lose(self, topic: Any, count: Any) -> None:
+        self._writer.put({"ev": "lost", "topic": topic, "count": count})
+
+
+def events_of(lose: Any) -> Any:
+    """Have ``lose`` called with the number of messages that the middleware has lost."""
+    try:
+        from rclpy.event_handler import SubscriptionEventCallbacks
+    except ImportError:
+        from rclpy.qos_event import SubscriptionEventCallbacks
+    return SubscriptionEventCallbacks(
+        message_lost=lambda event: lose(event.total_count_change), use_default_callbacks=False
+    )
+
+
+def one_line(error: Any) -> Any:
+    """An error in one line."""
+    return " ".join(str(error).split()) or type(error).__name__
+
+
+def described(rclpy: Any) -> Any:
+    """What this ROS is, for ``pytpc doctor``."""
+    from rclpy.utilities import get_rmw_implementation_identifier
+
+    return {
+        "rmw": get_rmw_implementation_identifier(),
+        "distro": os.environ.get("ROS_DISTRO", ""),
+        "python": sys.executable,
+        "rclpy": os.path.dirname(rclpy.__file__),
+    }
+
+
+def main() -> None:
+    """Serve the process that has started this one, until it ends."""
+    frames = os.dup(1)
+    # What ROS prints must not come between frames.
+    os.dup2(2, 1)
+    commands = os.fdopen(os.dup(0), "rb")
+    writer = Writer(frames)
+    if not os.environ.get("HOME"):
+        os.environ.setdefault("ROS_LOG_DIR", tempfile.gettempdir())
+    try:
+        import rclpy
+
+        agent = Agent(writer, rclpy)
+        writer.put(dict(described(rclpy), ev="ready"))
+    except BaseException as error:
+        missing = isinstance(error, ImportError)
+        writer.put({"ev": "failed", "error": one_line(error), "missing": missing})
+        writer.close()
+        os._exit(1)
+
+    def read() -> None:
+        while True:
+            found = read_frame(commands)
+            agent.commands.put(found or ({"op": "end"}, b""))
+            agent.wake.trigger()
+            if found is None:
+                return
+
+    threading.Thread(target=read, daemon=True).start()
+    try:
+        agent.run()
+        writer.put({"ev": "ended"})
+    finally:
+        writer.close()
+    # Destroying a node takes a second with some middleware; the graph learns by the closed socket.
+    agent.close()

@@ -1,0 +1,316 @@
+"""Records a graph of ROS 2 that runs: mission.mcap, run.json, and the values of parameters."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import queue
+import threading
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import yaml
+
+from pytpc.base.atomic import write_atomic
+from pytpc.base.errors import RunError
+from pytpc.base.signals import Stop
+from pytpc.base.wording import many
+from pytpc.ingest.decoders import ROS2
+from pytpc.ingest.messages import REPORTS, ROSOUT
+from pytpc.ingest.parameter_events import TOPIC, TYPE, decode_parameter_event
+from pytpc.recording.marks import MarkMessages
+from pytpc.recording.parameter_values import ParameterValues, SetValue
+from pytpc.ros.folder_lock import alone_in
+from pytpc.ros.intake import CLOCK, Recorder
+from pytpc.ros.mission_run import (
+    MCAP_FILE,
+    MissionRun,
+    Progress,
+    RecorderStatus,
+    RecordOptions,
+    keep_earlier_marks,
+    keep_static,
+    refuse_earlier,
+    save_run,
+)
+from pytpc.ros.ros2.address import Ros2Address
+from pytpc.ros.ros2.agent_process import Agent
+from pytpc.ros.ros2.found_nodes import nobody, visible
+from pytpc.ros.ros2.mcap_file import McapFile
+from pytpc.ros.source import Source
+from pytpc.values.origins import PARAMS_FILE, START_FILE
+
+KNOWN = {
+    ROSOUT: "rcl_interfaces/msg/Log",
+    REPORTS: "std_msgs/msg/String",
+    CLOCK: "rosgraph_msgs/msg/Clock",
+    TOPIC: TYPE,
+}
+"""The topics that TPC receives of each graph, and their types."""
+_TOLD_S = 0.2
+_POLL_S = 0.05
+# What a publisher sent before the recorder began is not of the mission, and comes at once.
+_HISTORY_S = 3.0
+_LOOK_NS = 2 * 10**9
+_VALUE_S = 2.0
+_QUIET_S = 10.0
+_SIM_TIME = "use_sim_time"
+
+
+def record_ros2_graph(
+    options: RecordOptions, stop: threading.Event | Stop, env: Mapping[str, str] | None = None
+) -> MissionRun:
+    """Record /rosout, /threshold_information, all marks, parameters, and the topics asked for.
+
+    The folder gets mission.mcap, run.json, params_start.yaml and params.yaml.
+
+    Args:
+        options: the folder, and when the recording ends beside ``stop``.
+        stop: ends the recording; if it is set again, no node is waited for.
+        env: says which graph it is; None: that of this process.
+
+    Raises:
+        MissingToolError: no interpreter has rclpy.
+        RunError: ROS 2 does not work, the folder has a recording, or the file can no longer be
+            written; it is closed, and has what was written before.
+        OSError: the file cannot be opened.
+    """
+    options.out_dir.mkdir(parents=True, exist_ok=True)
+    known = os.environ if env is None else env
+    with alone_in(options.out_dir):
+        refuse_earlier(options.out_dir)
+        keep_static(options)
+        began = time.monotonic()
+        agent = Agent(Ros2Address.of_env(known), known)
+        try:
+            recording = _GraphRecording(agent, options)
+        except BaseException:
+            agent.close()
+            raise
+        try:
+            kept = keep_earlier_marks(options.out_dir)
+            if kept and options.on_kept is not None:
+                options.on_kept(kept)
+            if options.on_graph is not None:
+                options.on_graph(str(agent.address), "")
+            ended = recording.run(stop, began)
+        finally:
+            # What was recorded until then is a whole file, unless that cannot be written.
+            status, fault = recording.finish(isinstance(stop, Stop) and stop.in_a_hurry)
+        run = MissionRun.of(status, options.out_dir, ended, time.monotonic() - began)
+        run = replace(run, bag=options.out_dir / MCAP_FILE)
+        save_run(run, options)
+        if fault:
+            raise RunError(f"the recording ended: {fault}; what came until then is in it", run.bag)
+        return run
+
+
+class _Values(threading.Thread):
+    """Asks each node once for its parameters; ``found`` has the events of those that answered.
+
+    A thread of its own: a node that hangs is given up after seconds.
+    """
+
+    def __init__(self, agent: Agent) -> None:
+        super().__init__(name="values", daemon=True)
+        self.found: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+        self._agent = agent
+        self._nodes: queue.SimpleQueue[str | None] = queue.SimpleQueue()
+        self._asked: set[str] = set()
+
+    def see(self, nodes: Sequence[str]) -> None:
+        """Ask those that are new; one that comes again is another process."""
+        for name in nodes:
+            if name not in self._asked and not name.rpartition("/")[2].startswith("_"):
+                self._nodes.put(name)
+        self._asked = set(nodes)
+
+    def run(self) -> None:
+        """Ask until ``close``."""
+        while (name := self._nodes.get()) is not None:
+            # A node may have no services of parameters.
+            with contextlib.suppress(RunError):
+                self.found.put(self._agent.values(name, _VALUE_S))
+
+    def close(self, patience_s: float) -> None:
+        """Ask no more."""
+        self._nodes.put(None)
+        self.join(patience_s)
+
+
+class _GraphRecording:
+    """A recording of a graph."""
+
+    def __init__(self, agent: Agent, options: RecordOptions) -> None:
+        """Subscribe to all that is known; the rest is found as it appears."""
+        self._agent = agent
+        self._options = options
+        topics = [f"/{one.lstrip('/')}" for one in options.topics]
+        until = f"/{options.until.lstrip('/')}" if options.until else None
+        recorded = dict.fromkeys([ROSOUT, REPORTS, TOPIC, *topics, *([until] if until else [])])
+        self._file = McapFile(options.out_dir / MCAP_FILE)
+        self._recorder = Recorder(self._file, list(recorded), until, False, ROS2)
+        self._recorder.hold()
+        self._topics = dict.fromkeys([*recorded, CLOCK])
+        self._values = _Values(agent)
+        self._set: list[SetValue] = []
+        self._missed = 0
+        self._on_quiet = options.on_quiet
+        self._event_source: Source | None = None
+        self._waiting_events: list[bytes] = []
+        self._began_ns = time.time_ns()
+        self._history_until = time.monotonic() + _HISTORY_S
+        for topic in self._topics:
+            # A node's log from before its subscriber was found would be lost otherwise.
+            agent.subscribe(topic, KNOWN.get(topic, ""), history=topic == ROSOUT)
+        self._values.start()
+
+    def run(self, stop: threading.Event | Stop, began: float) -> str:
+        """Record until the end; the word of ``MissionRun.ended``."""
+        told = 0.0
+        on_progress, timeout_s = self._options.on_progress, self._options.timeout_s
+        while True:
+            self._step(_POLL_S)
+            status = self._status()
+            wall_s = time.monotonic() - began
+            if on_progress is not None and time.monotonic() - told > _TOLD_S:
+                told = time.monotonic()
+                on_progress(Progress.of(status, wall_s))
+            if wall_s > _QUIET_S and not status.is_reporting:
+                self._tell_quiet()
+            if stop.is_set() or self._agent.fault:
+                return "interrupted"
+            if status.done:
+                return "done"
+            if timeout_s is not None and wall_s > timeout_s:
+                return "timeout"
+
+    def _tell_quiet(self) -> None:
+        """Say once what it looks like where nothing is reported."""
+        on_quiet, self._on_quiet = self._on_quiet, None
+        if on_quiet is None:
+            return
+        graph = self._agent.graph
+        nodes = visible(graph.nodes)
+        built = [one for one in graph.nodes if one.endswith("/_tpc")]
+        if not nodes:
+            on_quiet(nobody(self._agent.address), False)
+        elif not built:
+            on_quiet(
+                f"no reports: none of {many(len(nodes), 'node')} reports to this graph; were they"
+                ' built with TPC, and started after: eval "$(pytpc env --setup WORKSPACE)"?',
+                True,
+            )
+        else:
+            on_quiet(
+                f"no reports yet: {many(len(built), 'node')} can report, and may have compared"
+                " nothing so far, write files or be off; see: pytpc sink",
+                False,
+            )
+
+    def finish(self, hurry: bool) -> tuple[RecorderStatus, str]:
+        """Take what is on the way, leave the graph and close the file; also: what went wrong.
+
+        Raises:
+            RunError: it cannot be written.
+        """
+        fault = self._agent.fault
+        try:
+            try:
+                self._values.close(0.1 if hurry or fault else _VALUE_S)
+                if not fault:
+                    with contextlib.suppress(RunError):
+                        self._agent.drain()
+                self._step(0.0)
+            finally:
+                self._agent.close()
+            self._take_values()
+            self._recorder.put_early()
+        finally:
+            self._file.close()
+        self._save_values()
+        return self._status(closed=True), fault
+
+    def _step(self, timeout_s: float) -> None:
+        """Take the messages that have come."""
+        self._look()
+        for source, stamp_ns, data in self._agent.poll(timeout_s):
+            if 0 < stamp_ns < self._began_ns and time.monotonic() < self._history_until:
+                self._missed += source.topic == ROSOUT
+                continue
+            if source.topic == TOPIC:
+                self._see_event(data)
+            # Who reads the file says what is wrong with a message.
+            with contextlib.suppress(ValueError):
+                self._recorder.take(source, data)
+        self._take_values()
+        self._file.keep()
+
+    def _look(self) -> None:
+        graph = self._agent.graph
+        for topic in graph.topics:
+            if MarkMessages.message_type(topic) is not None and topic not in self._topics:
+                self._topics[topic] = None
+                self._recorder.add_topic(topic)
+                self._agent.subscribe(topic)
+        self._values.see(graph.nodes)
+        simulated = graph.clock > 0 or any(
+            one.value is True and one.name.endswith(f"/{_SIM_TIME}") for one in self._set
+        )
+        if simulated or self._recorder.waited_ns > _LOOK_NS:
+            self._recorder.see_sim_time(simulated)
+        self._recorder.settle()
+
+    def _take_values(self) -> None:
+        """Put the values that nodes told into the file, as if these had just set them."""
+        while not self._values.found.empty():
+            self._waiting_events.append(self._values.found.get())
+        if self._event_source is None:
+            self._event_source = self._agent.source_of(TOPIC)
+        if self._event_source is not None:
+            for event in self._waiting_events:
+                self._see_event(event)
+                self._recorder.take(self._event_source, event)
+            self._waiting_events.clear()
+
+    def _see_event(self, data: bytes) -> None:
+        with contextlib.suppress(ValueError):
+            event = decode_parameter_event(data)
+            now_ns = event.stamp_ns or self._recorder.now_ns()
+            for name, value in event.values.items():
+                self._set.append(SetValue(now_ns, f"{event.node.rstrip('/')}/{name}", value))
+
+    def _status(self, *, closed: bool = False) -> RecorderStatus:
+        account = self._recorder.status(closed=closed)
+        lost = dict(account.lost)
+        for topic, count in self._agent.lost.items():
+            # The numbers of batches say it for each node.
+            if topic in self._topics and not (topic == REPORTS and lost):
+                lost[topic] = lost.get(topic, 0) + count
+        missed = {**account.missed_before}
+        if self._missed:
+            missed[ROSOUT] = self._missed
+        return replace(account, lost=lost, missed_before=missed)
+
+    def _save_values(self) -> None:
+        """Write the values at the start and at the end, as files that `ros2` reads, too."""
+        values, folder = ParameterValues(self._set), self._options.out_dir
+        if values.names():
+            write_params(folder / START_FILE, values.first())
+            write_params(folder / PARAMS_FILE, values.last())
+
+
+def write_params(path: Path, values: Mapping[str, object]) -> None:
+    """Write values by full names as a parameters file of ROS 2.
+
+    Raises:
+        TpcError: the file cannot be written.
+    """
+    nodes: dict[str, dict[str, object]] = {}
+    for name, value in sorted(values.items()):
+        node, _, parameter = name.rpartition("/")
+        nodes.setdefault(node, {})[parameter] = value
+    document = {node: {"ros__parameters": found} for node, found in nodes.items()}
+    write_atomic(path, yaml.safe_dump(document, sort_keys=True).encode())

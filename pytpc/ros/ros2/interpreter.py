@@ -1,0 +1,111 @@
+"""Finds the Python interpreter that has rclpy, which pytpc's own need not have."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+from pytpc.base.errors import MissingToolError
+from pytpc.base.paths import project_root
+
+VARIABLE = "TPC_ROS2_PYTHON"
+HOW_TO = (
+    "source ROS 2 (`. /opt/ros/DISTRO/setup.sh`), or name the interpreter that has rclpy:"
+    f" export {VARIABLE}=/path/to/python3"
+)
+_OPT = Path("/opt/ros")
+_PATIENCE_S = 20.0
+_NOT_FOR_IT = re.compile(r"TPC_|PYTHONHOME$|PYTHONSTARTUP$|COVERAGE|COV_")
+
+
+class Interpreter(NamedTuple):
+    """An interpreter, and the environment in which it is to run."""
+
+    path: str
+    env: Mapping[str, str]
+
+
+def interpreters(env: Mapping[str, str]) -> Iterator[Interpreter]:
+    """The interpreters that may have rclpy, the likeliest first.
+
+    Raises:
+        MissingToolError: the one that the user names is not there.
+    """
+    clean = _without_tpc(env)
+    if named := env.get(VARIABLE):
+        if shutil.which(named) is None:
+            raise MissingToolError(f"{VARIABLE} names no program: {named}")
+        yield Interpreter(named, clean)
+        return
+    seen = set()
+    own = project_root() / ".venv-ros2/bin/python"
+    venv = env.get("VIRTUAL_ENV", "")
+    places = [
+        shutil.which("python3", path=env.get("PATH", os.defpath)),
+        f"{venv}/bin/python3" if venv else None,
+        "/usr/bin/python3" if env.get("AMENT_PREFIX_PATH") else None,
+        str(own),
+    ]
+    for place in places:
+        if place and place not in seen and os.access(place, os.X_OK):
+            seen.add(place)
+            if _may_have_rclpy(place, clean):
+                yield Interpreter(place, clean)
+    for setup in sorted(_OPT.glob("*/setup.sh"), reverse=True):
+        if next(setup.parent.glob("lib/python3*/site-packages/rclpy"), None) is not None:
+            yield Interpreter("/usr/bin/python3", _sourced(setup, clean))
+
+
+def _may_have_rclpy(python: str, env: Mapping[str, str]) -> bool:
+    """Whether an interpreter finds the package; it is not imported, which takes a while."""
+    code = "import importlib.util as u, sys; sys.exit(u.find_spec('rclpy') is None)"
+    try:
+        ran = subprocess.run(
+            [python, "-c", code],
+            env=dict(env),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            timeout=_PATIENCE_S,
+            check=False,
+            # A Ctrl-C ends the recording, and not this.
+            start_new_session=True,
+        )
+    except (OSError, subprocess.TimeoutExpired):
+        return False
+    return ran.returncode == 0
+
+
+def _without_tpc(env: Mapping[str, str]) -> dict[str, str]:
+    """The environment without TPC's hook: the agent is no node that reports."""
+    kept = {name: value for name, value in env.items() if not _NOT_FOR_IT.match(name)}
+    entries = [one for one in env.get("PYTHONPATH", "").split(os.pathsep) if one]
+    root = str(project_root())
+    others = [one for one in entries if not one.startswith(root)]
+    kept.pop("PYTHONPATH", None)
+    if others:
+        kept["PYTHONPATH"] = os.pathsep.join(others)
+    return kept
+
+
+def _sourced(setup: Path, env: Mapping[str, str]) -> dict[str, str]:
+    """The environment after sourcing a setup.sh."""
+    try:
+        ran = subprocess.run(
+            ["sh", "-c", '. "$0" >/dev/null 2>&1; env -0', str(setup)],
+            env=dict(env),
+            capture_output=True,
+            timeout=_PATIENCE_S,
+            check=False,
+            # A Ctrl-C ends the recording, and not this.
+            start_new_session=True,
+        )
+    except (OSError, subprocess.TimeoutExpired):
+        return dict(env)
+    pairs = (one.partition("=") for one in ran.stdout.decode("utf-8", "replace").split("\0"))
+    return {name: value for name, equals, value in pairs if equals} or dict(env)

@@ -1,0 +1,33 @@
+//===- RclState.h - What the program has told rcl -------------------------===//
+//
+// Programs of ROS 2 call rcl through rclcpp, and this library is before rcl in
+// the order in which the dynamic linker looks for functions: it has functions
+// of the same names, which take notes and call those of rcl. They use no header
+// of rcl; its structures are only passed on.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_RCLSTATE_H
+#define TPC_RCLSTATE_H
+
+#include <atomic>
+#include <cstdint>
+
+namespace tpc {
+
+struct RclState {
+  /// The full name of the first node; null before it. Never freed.
+  std::atomic<const char *> Node{nullptr};
+  std::atomic<int64_t> NodeSince{0}; ///< steady time
+  /// Whether a clock of the program follows /clock, and what it was last told.
+  std::atomic<bool> IsSimulated{false};
+  std::atomic<int64_t> SimulatedNs{0};
+  /// How many contexts were shut down.
+  std::atomic<uint32_t> Shutdowns{0};
+
+  /// That of this process, in the log library.
+  static RclState &of();
+};
+
+} // namespace tpc
+
+#endif // TPC_RCLSTATE_H

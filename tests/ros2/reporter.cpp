@@ -1,0 +1,108 @@
+//===- reporter.cpp - A node on rcl alone that reports --------------------===//
+//
+// reporter NODE NAMESPACE [--ros-args ...]; reads one command from each line:
+//
+//   report N PAUSE_US   N reports, the values 0 to N-1; the outcome alternates
+//   simulated NS        the node's clock follows /clock, and it is NS
+//   read NAME           a parameter is read
+//   node NAME           one more node
+//   fork N              N reports in a child, which leaves by _exit
+//   shutdown            ends the node
+//   exit | quick        returns from main | _exit
+//
+// Prints `ok` when it is done.
+//
+//===----------------------------------------------------------------------===//
+#include "LogOne.h"
+
+#include <rcl/error_handling.h>
+#include <rcl/node.h>
+#include <rcl/rcl.h>
+#include <rcl/time.h>
+
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <iostream>
+#include <string>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+static char Key[] = "00000001-0000-5000-8000-000000000000";
+static char ReadKey[] = "00000002-0000-5000-8000-000000000000";
+
+static void check(rcl_ret_t Result) {
+  if (Result == RCL_RET_OK)
+    return;
+  std::fprintf(stderr, "rcl: %s\n", rcl_get_error_string().str);
+  std::_Exit(3);
+}
+
+static void report(long Count, long PauseUs) {
+  auto Next = std::chrono::steady_clock::now();
+  for (long I = 0; I < Count; ++I) {
+    log_one(Key, I % 2, static_cast<double>(I), 0.5, I % 2);
+    Next += std::chrono::microseconds(PauseUs);
+    if (PauseUs)
+      std::this_thread::sleep_until(Next);
+  }
+}
+
+static void answer() {
+  std::puts("ok");
+  std::fflush(stdout);
+}
+
+int main(int Count, char **Words) {
+  rcl_allocator_t Allocator = rcl_get_default_allocator();
+  rcl_init_options_t Options = rcl_get_zero_initialized_init_options();
+  check(rcl_init_options_init(&Options, Allocator));
+  rcl_context_t Context = rcl_get_zero_initialized_context();
+  check(rcl_init(Count, Words, &Options, &Context));
+  rcl_node_options_t Of = rcl_node_get_default_options();
+  rcl_node_t Node = rcl_get_zero_initialized_node();
+  check(rcl_node_init(&Node, Words[1], Words[2], &Context, &Of));
+  rcl_clock_t Clock;
+  check(rcl_clock_init(RCL_ROS_TIME, &Clock, &Allocator));
+  answer();
+  for (std::string Command; std::cin >> Command;) {
+    if (Command == "report") {
+      long Reports, PauseUs;
+      std::cin >> Reports >> PauseUs;
+      report(Reports, PauseUs);
+    } else if (Command == "simulated") {
+      int64_t Ns;
+      std::cin >> Ns;
+      check(rcl_enable_ros_time_override(&Clock));
+      check(rcl_set_ros_time_override(&Clock, Ns));
+    } else if (Command == "read") {
+      std::string Name;
+      std::cin >> Name;
+      log_read(ReadKey, nullptr, &Name, false);
+    } else if (Command == "node") {
+      std::string Name;
+      std::cin >> Name;
+      static rcl_node_t Second = rcl_get_zero_initialized_node();
+      check(rcl_node_init(&Second, Name.c_str(), "/", &Context, &Of));
+    } else if (Command == "fork") {
+      long Reports;
+      std::cin >> Reports;
+      const pid_t Child = fork();
+      if (!Child) {
+        report(Reports, 0);
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        std::_Exit(0);
+      }
+      waitpid(Child, nullptr, 0);
+    } else if (Command == "shutdown") {
+      check(rcl_node_fini(&Node));
+      check(rcl_shutdown(&Context));
+    } else if (Command == "exit") {
+      break;
+    } else if (Command == "quick") {
+      std::_Exit(0);
+    }
+    answer();
+  }
+}

@@ -1,0 +1,227 @@
+"""`pytpc record`, `mark`, `watch`, `sink` and `apply --live` on a real ROS 2 graph."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from pytpc.base.paths import project_root
+from pytpc.ingest.reading import read
+from pytpc.recording.parameter_values import ParameterValues
+from pytpc.static.static_info import StaticInfo
+from ros2_graph import PYTHON, ros2_env
+from terminals import Terminal
+
+NODE = Path(__file__).with_name("guard_node.py")
+SPEED = "/robot1/guard/limits.speed"
+# What `guard_node.py` reports is what this would.
+COMPARING = """\
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import Float64
+
+rclpy.init()
+node = Node("guard", namespace="/robot1")
+limit = node.declare_parameter("limits.speed", 6.5).value
+publisher = node.create_publisher(Float64, "stop", 10)
+for step in range(10):
+    if step > limit:
+        publisher.publish(Float64(data=1.0))
+"""
+PATIENCE_S = 60.0
+
+
+@pytest.fixture
+def env(domain: dict[str, str], tmp_path: Path) -> dict[str, str]:
+    runtime = tmp_path / "run"
+    runtime.mkdir(mode=0o700)
+    more = {"XDG_RUNTIME_DIR": str(runtime), "HOME": str(tmp_path)}
+    return ros2_env(domain, PYTHONPATH=str(project_root()), **more)
+
+
+def pytpc(*words: str) -> list[str]:
+    return [sys.executable, "-m", "pytpc", *words]
+
+
+@contextlib.contextmanager
+def running(command: list[str], env: dict[str, str], folder: Path) -> Iterator[subprocess.Popen]:
+    with subprocess.Popen(
+        command,
+        env=env,
+        cwd=folder,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        try:
+            yield process
+        finally:
+            process.kill()
+
+
+@contextlib.contextmanager
+def guard(env: dict[str, str], folder: Path, rate: int, seconds: float, *key: str):
+    command = [str(PYTHON), str(NODE), str(rate), str(seconds), *key]
+    node_env = {name: value for name, value in env.items() if name != "PYTHONPATH"}
+    with running(command, node_env, folder) as node:
+        assert node.stdout.readline() == "ready\n", node.stderr.read()
+        yield node
+
+
+@contextlib.contextmanager
+def recorder(env: dict[str, str], folder: Path, *words: str):
+    with running(pytpc("record", "-o", "mission", *words), env, folder) as process:
+        for line in process.stderr:
+            if "press Ctrl-C to stop" in line:
+                break
+        entries = Path(env["XDG_RUNTIME_DIR"]) / "pytpc"
+        until = time.monotonic() + PATIENCE_S
+        while not (entries.is_dir() and any(entries.iterdir())):
+            assert time.monotonic() < until
+            assert process.poll() is None, process.stderr.read()
+            time.sleep(0.05)
+        yield process
+
+
+def ended(process: subprocess.Popen) -> str:
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=PATIENCE_S)
+    assert process.returncode == 0, err
+    return out
+
+
+def told(env: dict[str, str], folder: Path, *words: str, status: int = 0) -> str:
+    ran = subprocess.run(
+        pytpc(*words),
+        env=env,
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE_S,
+        check=False,
+    )
+    assert ran.returncode == status, (ran.stdout, ran.stderr)
+    return ran.stdout + ran.stderr
+
+
+def analysed(env: dict[str, str], folder: Path) -> str:
+    """Analyse a node that compares the parameter; the key of its comparison."""
+    (folder / "guard.py").write_text(COMPARING)
+    told(env, folder, "analyse", "guard.py", "-o", "static.json")
+    (key,) = StaticInfo.load(folder / "static.json").thresholds
+    return str(key)
+
+
+def test_no_report_is_lost_at_5000_a_second(env: dict[str, str], tmp_path: Path) -> None:
+    with recorder(env, tmp_path) as process, guard(env, tmp_path, 5000, 4.0) as node:
+        sent = int(node.stdout.readline())
+        out = ended(process)
+    # 100 reports each 20 ms, for 4 s.
+    assert sent == 20_000
+    assert "20,000 reports and 0 marks" in out
+    recording = read(tmp_path / "mission")
+    assert len(recording.events) == 20_000
+    assert recording.lost == {}
+    assert recording.events.nodes == ("/robot1/guard",)
+    run = json.loads((tmp_path / "mission/run.json").read_text())
+    assert (run["bag"], run["ended"]) == ("mission.mcap", "interrupted")
+    assert sum(run["lost"].values()) == 0
+    assert "/robot1/guard" in (tmp_path / "mission/params.yaml").read_text()
+
+
+def test_the_value_at_a_time_is_that_of_before_or_after_it_was_set(
+    env: dict[str, str], tmp_path: Path
+) -> None:
+    with recorder(env, tmp_path) as process, guard(env, tmp_path, 50, 600.0):
+        said = told(env, tmp_path, "apply", "--live", "limits.speed", "4.0")
+        assert f"{SPEED} 6.5 -> 4.0" in said
+        refused = told(env, tmp_path, "apply", "--live", SPEED, "40.0", status=1)
+        assert "/robot1/guard refuses limits.speed=40.0: at most 10" in refused
+        wrong = told(env, tmp_path, "apply", "--live", SPEED[:-1], "4.0", status=1)
+        assert f"did you mean {SPEED}" in wrong
+        said = told(env, tmp_path, "sink")
+        assert "/robot1/guard" in said
+        assert "topic" in said
+        found = json.loads(told(env, tmp_path, "sink", "--policy", "edges", "--json"))
+        assert [(one["node"], one["values"]["policy"]) for one in found] == [
+            ("/robot1/guard", "edges")
+        ]
+        refused = told(env, tmp_path, "sink", "/robot1/guard", "--sink", "file", status=1)
+        assert "/robot1/guard: no folder" in refused
+        ended(process)
+    recording = read(tmp_path / "mission")
+    values = ParameterValues(recording.values)
+    changes = [one for one in values.changes() if one.name == SPEED]
+    assert [(one.old, one.new) for one in changes] == [(6.5, 4.0)]
+    at = changes[0].time_ns
+    assert (values.at(SPEED, at - 1), values.at(SPEED, at)) == (6.5, 4.0)
+    # The node reports with the value of the moment, and on the same clock.
+    before = recording.events.time_ns < at
+    assert set(recording.events.thresh[before].tolist()) == {6.5}
+    assert 4.0 in recording.events.thresh[~before].tolist()
+    assert any(f"{SPEED} was set from 6.5 to 4.0" in one for one in recording.notes)
+    start = (tmp_path / "mission/params_start.yaml").read_text()
+    assert ("limits.speed: 6.5" in start, "limits.speed: 4.0" in start) == (True, False)
+    assert "limits.speed: 4.0" in (tmp_path / "mission/params.yaml").read_text()
+
+
+def test_marks_of_two_observers_are_ranked_by(env: dict[str, str], tmp_path: Path) -> None:
+    key = analysed(env, tmp_path)
+    with contextlib.ExitStack() as stack:
+        process = stack.enter_context(recorder(env, tmp_path, "--static", "static.json"))
+        stack.enter_context(guard(env, tmp_path, 50, 600.0, key))
+        found = json.loads(told(env, tmp_path, "watch", "--once", "--seconds", "2", "--json"))
+        assert "limits.speed" in json.dumps(found)
+        for observer, press in (("ana", "1"), ("ben", "2")):
+            command = pytpc("mark", "--observer", observer)
+            with Terminal(command, tmp_path, env=env, columns=160) as terminal:
+                terminal.wait_for("1 node listening", PATIENCE_S)
+                terminal.press(press)
+                terminal.wait_for("type", PATIENCE_S)
+                terminal.press("q")
+                assert terminal.wait(PATIENCE_S) == 0
+        ended(process)
+    found = read(tmp_path / "mission/mission.mcap")
+    assert [(one.observer, one.type) for one in found.marks] == [("ana", "I"), ("ben", "II")]
+    assert all(found.start_ns <= one.time_ns <= found.end_ns for one in found.marks)
+    assert "limits.speed" in told(env, tmp_path, "rank", "mission")
+
+
+def test_nobody_is_there_and_other_wrong_settings(env: dict[str, str], tmp_path: Path) -> None:
+    said = told(env, tmp_path, "apply", "--live", "/a/b", "1", status=1)
+    assert f"no node in domain {env['ROS_DOMAIN_ID']}; ROS_DOMAIN_ID=" in said
+    for variables, words in (
+        ({"RMW_IMPLEMENTATION": "rmw_none"}, "RMW_IMPLEMENTATION=rmw_none is not installed"),
+        ({"TPC_ROS2_PYTHON": "/usr/bin/false"}, "no node can be made"),
+        ({"TPC_ROS2_PYTHON": "/no/python"}, "TPC_ROS2_PYTHON names no program"),
+        ({"TPC_ROS": "3"}, "give 1 or 2"),
+    ):
+        said = told({**env, **variables}, tmp_path, "record", "-o", "none", status=1)
+        assert words in said
+        errors = [line for line in said.splitlines() if line.startswith("pytpc: error")]
+        assert len(errors) == 1
+        assert "Traceback" not in said
+
+
+def test_a_killed_agent_loses_nothing_of_what_was_recorded(
+    env: dict[str, str], tmp_path: Path
+) -> None:
+    with recorder(env, tmp_path) as process, guard(env, tmp_path, 500, 1.0) as node:
+        sent = int(node.stdout.readline())
+        # The recorder has no other child.
+        children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+        time.sleep(1.0)
+        subprocess.run(["kill", "-9", *children], check=True)
+        _, err = process.communicate(timeout=PATIENCE_S)
+    assert process.returncode == 1
+    assert "the node of ROS 2 that pytpc runs has ended" in err
+    assert len(read(tmp_path / "mission").events) == sent
