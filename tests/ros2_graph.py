@@ -10,6 +10,8 @@ from pytpc.base.paths import prefix, project_root
 
 PYTHON = project_root() / ".venv-ros2/bin/python"
 """The interpreter with the wheels of ROS 2, which `tools/setup test` installs."""
+PATIENCE_S = 600.0
+"""How long a test waits for what must come, on a machine that others use, too."""
 
 
 def ros2_env(domain: dict[str, str], **more: str) -> dict[str, str]:
@@ -29,7 +31,7 @@ def run_python(
         env=ros2_env(domain, **env),
         capture_output=True,
         text=True,
-        timeout=600,
+        timeout=PATIENCE_S,
         check=False,
     )
 
@@ -61,6 +63,6 @@ def compile_on_rcl(source: Path, output: Path) -> Path:
             *[f"-L{ros}/lib", "-lrcl", "-lrcutils", "-Wl,--allow-shlib-undefined"],
         ],
         check=True,
-        timeout=120,
+        timeout=PATIENCE_S,
     )
     return output

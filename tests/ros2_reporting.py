@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from pytpc.ros.node_start import RUN
-from ros2_graph import PYTHON, ros2_env
+from ros2_graph import PATIENCE_S, PYTHON, ros2_env
 
 KEY = "00000001-0000-5000-8000-000000000001"
 LINE = "    return x > 6.5"
@@ -24,7 +24,7 @@ def high(x):
 {LINE}
 
 def until(done):
-    deadline = time.monotonic() + 60
+    deadline = time.monotonic() + {PATIENCE_S}
     while not done() and time.monotonic() < deadline:
         time.sleep(0.01)
 """
@@ -118,8 +118,8 @@ class Listener:
 
 
 def wait_for(done: Callable[[], bool]) -> None:
-    """Wait until it is so, half a minute at most."""
-    deadline = time.monotonic() + 30
+    """Wait until it is so."""
+    deadline = time.monotonic() + PATIENCE_S
     while not done():
         assert time.monotonic() < deadline
         time.sleep(0.02)
@@ -169,5 +169,5 @@ class Program:
 
 def ended(process: subprocess.Popen[str]) -> subprocess.CompletedProcess[str]:
     """Its status, and what it said."""
-    out, said = process.communicate(timeout=60)
+    out, said = process.communicate(timeout=PATIENCE_S)
     return subprocess.CompletedProcess(process.args, process.returncode, out, said)

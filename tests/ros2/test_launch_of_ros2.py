@@ -17,7 +17,7 @@ from launch_files import XML, write_launch_files
 
 from pytpc.base.errors import InputError
 from pytpc.values.target import Target, chosen, plan_origin, read_target
-from ros2_graph import PYTHON, ros2_env
+from ros2_graph import PATIENCE_S, PYTHON, ros2_env
 
 
 @pytest.fixture(scope="module")
@@ -230,7 +230,7 @@ def test_nodes_that_launch_starts_get_the_values_that_are_shown(
         "TPC_TEST_NODE": str(Path(__file__).with_name("node_of_launch.py")),
     }
     ran = subprocess.run(
-        [PYTHON, launch], env=env, capture_output=True, text=True, timeout=60, check=False
+        [PYTHON, launch], env=env, capture_output=True, text=True, timeout=PATIENCE_S, check=False
     )
     given = {
         f"{path.stem.replace('+', '/')}/{name}": value

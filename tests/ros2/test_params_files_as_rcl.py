@@ -12,7 +12,7 @@ import subprocess
 from pathlib import Path
 
 from pytpc.values.rcl_params import ParamsError, ParamsStore
-from ros2_graph import PYTHON, ros2_env
+from ros2_graph import PATIENCE_S, PYTHON, ros2_env
 
 PROGRAM = Path(__file__).with_name("read_params.py")
 NODES = [["/", "guard"], ["/robot1", "guard"], ["/robot1/arm", "guard"], ["/robot2", "other"]]
@@ -243,7 +243,7 @@ def test_the_same_values_as_rclpy_gets(domain: dict[str, str], tmp_path: Path) -
         env=ros2_env(domain),
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=PATIENCE_S,
         check=False,
     )
     assert ran.returncode == 0, ran.stderr

@@ -6,7 +6,7 @@ import json
 
 from pytpc.ingest.reading import read
 from ros2_graph import run_python
-from ros2_reporting import Program, ended
+from ros2_reporting import Program, ended, wait_for
 
 SET = """\
 import json, rclpy, sys
@@ -18,9 +18,9 @@ node = Node("setter")
 
 def call(kind, name, request):
     client = node.create_client(kind, "/robot1/tuned/_tpc/" + name)
-    assert client.wait_for_service(20.0)
+    assert client.wait_for_service(600.0)
     future = client.call_async(request)
-    rclpy.spin_until_future_complete(node, future, timeout_sec=20.0)
+    rclpy.spin_until_future_complete(node, future, timeout_sec=600.0)
     return future.result()
 
 FIELDS = {1: "bool_value", 2: "integer_value", 3: "double_value", 4: "string_value"}
@@ -77,6 +77,8 @@ rclpy.shutdown()
     process = program.start(str(stop), "--ros-args", "--params-file", str(params), TPC_SINK="off")
     try:
         said = run_python(setter, domain)
+        # The eight reports of this second may be used up: the next one has its own.
+        wait_for(lambda: len(read(program.reports).events) > 0)
     finally:
         stop.touch()
         done = ended(process)

@@ -14,7 +14,7 @@ import pytest
 
 from pytpc.base.paths import prefix
 from pytpc.ingest.reading import read
-from ros2_graph import PYTHON, compile_on_rcl, ros2_env, wheels_env
+from ros2_graph import PATIENCE_S, PYTHON, compile_on_rcl, ros2_env, wheels_env
 
 HERE = Path(__file__).parent
 GUARD = "/robot1/guard"
@@ -62,7 +62,7 @@ class Dialogue:
 
     def finish(self, line: str = "exit") -> int:
         self.tell(line)
-        return self.process.wait(timeout=30)
+        return self.process.wait(timeout=PATIENCE_S)
 
     def errors(self) -> str:
         return self._errors.read_text()
@@ -306,7 +306,7 @@ def test_no_report_is_lost_in_a_file_when_the_node_is_killed(start: Start, tmp_p
     node = start(sink="file")
     node.say("report 20000 0")
     node.process.kill()
-    node.process.wait(timeout=30)
+    node.process.wait(timeout=PATIENCE_S)
     (file,) = (tmp_path / "reports").iterdir()
     assert file.name.startswith("robot1_guard-")
     assert list(read(file).events.cmp) == list(map(float, range(20000)))

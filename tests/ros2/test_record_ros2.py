@@ -17,7 +17,7 @@ from pytpc.base.paths import project_root
 from pytpc.ingest.reading import read
 from pytpc.recording.parameter_values import ParameterValues
 from pytpc.static.static_info import StaticInfo
-from ros2_graph import PYTHON, ros2_env
+from ros2_graph import PATIENCE_S, PYTHON, ros2_env
 from terminals import Terminal
 
 NODE = Path(__file__).with_name("guard_node.py")
@@ -36,7 +36,6 @@ for step in range(10):
     if step > limit:
         publisher.publish(Float64(data=1.0))
 """
-PATIENCE_S = 60.0
 
 
 @pytest.fixture

@@ -34,6 +34,8 @@ _END_S = 5.0
 _CALL_S = 3.0
 _FOUND_S = 1.5
 _LONG_S = 5.0
+# Where the start took long, so do the answers of others: this many times as long.
+_LONG_STARTS = 10.0
 
 Head = dict[str, Any]
 
@@ -95,8 +97,10 @@ class Agent:
         self._ended = threading.Event()
         self._closing = False
         self._said: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - closed by `close`
+        start = time.monotonic()
         self._process = self._started(os.environ if env is None else env)
         self._began = time.monotonic()
+        self._patience_s = max(_LONG_S, _LONG_STARTS * (self._began - start))
         self._thread = threading.Thread(target=self._read, name="agent", daemon=True)
         self._thread.start()
 
@@ -135,10 +139,10 @@ class Agent:
     def wait_for_graph(self, enough: Callable[[Graph], bool] = lambda _: True) -> Graph:
         """The graph, after the time that others have to be found since the agent began.
 
-        If it is not ``enough`` by then, it waits some seconds longer: a machine may be busy.
+        If it is not ``enough`` by then, it waits some seconds longer, more on a busy machine.
         """
         self._ended.wait(max(0.0, self._began + _FOUND_S - time.monotonic()))
-        until = self._began + _LONG_S
+        until = self._began + self._patience_s
         while not enough(self.graph) and time.monotonic() < until and not self._ended.is_set():
             self._ended.wait(0.1)
         return self.graph

@@ -21,7 +21,7 @@ from pytpc.ingest.reading import read
 from pytpc.ros.node_start import with_python
 from pytpc.workspace.colcon import BuildError, BuildOptions
 from pytpc.workspace.ros2 import has_cmake_package
-from ros2_graph import PYTHON, ros2_env
+from ros2_graph import PATIENCE_S, PYTHON, ros2_env
 from ros2_workspace import make_ros2_workspace
 
 # The node compares these with 6.5.
@@ -75,13 +75,13 @@ def test_an_installed_node_reports_in_the_environment_of_the_build(
     # As `ros2 run guard speed_guard` finds it.
     ask = "from ament_index_python import get_package_prefix as of; print(of('guard'))"
     found = subprocess.run(
-        [PYTHON, "-c", ask], env=env, capture_output=True, text=True, timeout=60, check=True
+        [PYTHON, "-c", ask], env=env, capture_output=True, text=True, timeout=PATIENCE_S, check=True
     )
     script = Path(found.stdout.strip()) / "lib/guard/speed_guard"
     assert script == workspace / ".tpc/install/guard/lib/guard/speed_guard"
     reports = {"TPC_SINK": "file", "TPC_FOLDER": str(tmp_path / "reports")}
     ran = subprocess.run(
-        [script], env={**env, **reports}, capture_output=True, text=True, timeout=60, check=False
+        [script], env={**env, **reports}, capture_output=True, text=True, timeout=PATIENCE_S, check=False
     )
     assert (ran.returncode, ran.stderr) == (0, "")
     events = read(tmp_path / "reports").events
@@ -102,7 +102,7 @@ def test_run_gives_an_installed_node_its_workspace(
         env=ros2_env(domain, **reports),
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=PATIENCE_S,
         check=False,
     )
     assert (ran.returncode, ran.stderr) == (0, "")
