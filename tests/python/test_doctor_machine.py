@@ -136,6 +136,13 @@ CASES = [
 
 
 # On Debian /bin is a link to /usr/bin.
+def test_the_python_of_ros_2_may_be_the_first_one(tmp_path: Path) -> None:
+    package = tmp_path / "lib/python3.11/site-packages/rclpy/__init__.py"
+    package.parent.mkdir(parents=True)
+    package.touch()
+    assert check_machine(replace(SOUND, python=tmp_path / "bin/python3")) == []
+
+
 def test_the_systems_python_under_another_name_is_no_finding(tmp_path: Path) -> None:
     (tmp_path / "bin").symlink_to("/usr/bin")
     assert check_machine(replace(SOUND, python=tmp_path / "bin/python3")) == []

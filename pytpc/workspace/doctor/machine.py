@@ -34,6 +34,7 @@ from pytpc.base.paths import (
     unsuited_clangs,
 )
 from pytpc.workspace.doctor.finding import Finding, error, note, warning
+from pytpc.workspace.ros2 import has_module
 
 # cmake_language(DEFER), by which tpc.cmake sees the finished targets, came with 3.19.
 CMAKE_NEEDED = (3, 19)
@@ -317,6 +318,9 @@ def _python(machine: Machine) -> Iterator[Finding]:
         )
     elif machine.python is not None and machine.python.parent.resolve() != _SYSTEM_PROGRAMS:
         folder = machine.python.parent
+        if has_module(folder.parent, "rclpy"):
+            # It is the Python of ROS 2, which builds and nodes use.
+            return
         owner, mend = "not the system's", 'export PATH="/usr/bin:$PATH"'
         if folder.name == "shims":
             owner = "pyenv's"
