@@ -48,6 +48,16 @@ def said(probability, none):
     return Blame((accused(probability),), none, 3, MARKS, ()).text
 
 
+def test_other_names_of_the_same_comparisons_change_nothing_but_the_names():
+    # By these the parameters stand in the opposite order.
+    others = static_info(comparison(0, "/z/gate"), comparison(1, "/a/safe"), comparison(2, "/b"))
+    one = mission()
+    found = [blame(one, static, Question()) for static in (STATIC, others)]
+    assert [suspect.parameter for suspect in found[0].suspects] == ["~gate", "~safe"]
+    assert [suspect.parameter for suspect in found[1].suspects] == ["/z/gate", "/a/safe"]
+    assert found[0].suspects[0].probability == pytest.approx(found[1].suspects[0].probability)
+
+
 def test_a_verdict_is_an_accusation_from_one_half_on():
     assert said(0.5, 0.2) == "blame ~gate: 50 %; none of the parameters: 20 %"
     assert said(0.499, 0.2) == "not sure: ~gate is likeliest (50 %); none of the parameters: 20 %"

@@ -74,11 +74,12 @@ class ResultStreams:
     @classmethod
     def of(cls, events: Events, tpcs: Tpcs) -> ResultStreams:
         """The streams of a table; cached as long as the table exists."""
+        asked = (tpcs.keys, tpcs.parameters)
         known = _KEPT.get(events)
-        if known is not None and known[0] == tpcs.keys:
+        if known is not None and known[0] == asked:
             return known[1]
         made = cls._of(events.with_keys(tpcs.keys), tpcs)
-        _KEPT[events] = (tpcs.keys, made)
+        _KEPT[events] = (asked, made)
         return made
 
     @classmethod
@@ -117,7 +118,9 @@ class ResultStreams:
         return np.sort(np.concatenate([np.zeros(0), *times]))
 
 
-_KEPT: WeakKeyDictionary[Events, tuple[tuple[str, ...], ResultStreams]] = WeakKeyDictionary()
+_Asked = tuple[tuple[str, ...], tuple[str, ...]]
+# With the keys and the parameters, whose order gives the columns.
+_KEPT: WeakKeyDictionary[Events, tuple[_Asked, ResultStreams]] = WeakKeyDictionary()
 
 
 def _stream(events: Events, rows: Int64s, begin_ns: int, places: tuple[int, int]) -> ResultStream:
