@@ -68,7 +68,7 @@ def test_clean_mission_takes_a_picture_and_gets_no_mark(robot, missions):
     assert mission.run.messages["/camera/picture"] == 1
     assert 30.0 < mission.run.sim_s < 60.0
     recording = mission.recording
-    assert set(recording.events.nodes) == {f"/{name}" for name in robot.scripts}
+    assert set(recording.events.nodes) == {f"/{name}" for name in robot.programs}
     assert set(recording.events.keys) <= set(robot.static.comparisons)
     # Of the 46 comparisons some need a second picture, an alarm or an empty battery.
     assert len(recording.events.keys) > 35

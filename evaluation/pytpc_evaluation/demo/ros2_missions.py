@@ -20,16 +20,25 @@ from pytpc.values.origins import PARAMS_FILE
 from pytpc_evaluation.demo.demo import TreatedMission, treated
 from pytpc_evaluation.demo.demo_examples import Example
 from pytpc_evaluation.demo.demo_show import Ready, step, tell_found
+from pytpc_evaluation.demo.ros2_controller import has_rclcpp, with_controller
 from pytpc_evaluation.demo.ros2_robot import Flown, Ros2Robot, flown, own_domain, prepared
 from pytpc_evaluation.treatment import Treatment
 
 
 @contextmanager
 def analysed_package(example: Example, console: Console, out: Path) -> Iterator[Ready]:
-    """The robot's package as it is, analysed; Python nodes need no build."""
+    """The robot's package as it is, analysed; Python nodes need no build.
+
+    Where rclcpp is found, the controller is the one in C++.
+    """
     with step(console, "Analyse the mission's nodes"):
         robot = prepared(example, out / "install")
-        tell_found(console, robot.static)
+        if not has_rclcpp():
+            tell_found(console, robot.static)
+    if has_rclcpp():
+        with step(console, "Build the flight controller in C++ with TPC"):
+            robot = with_controller(robot, out)
+            tell_found(console, robot.static)
     with own_domain() as domain:
         yield Ready(robot.static, partial(run_ros2_treatment, robot, domain=domain))
 

@@ -1,7 +1,8 @@
 """A robot of rclpy nodes: analysed, and flown on a graph of its own.
 
 The nodes run under the interpreter that ``tools/setup ros2`` makes, from the package's folder: the
-scripts of its entry points are written as an installation of it writes them.
+scripts of its entry points are written as an installation of it writes them. Nodes in C++ may take
+the place of some.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ from pytpc.ros.mission_run import MARK_TOPICS, MISSION_DONE, Progress, clear_ear
 from pytpc.ros.node_start import RUN
 from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.demo.demo_examples import SHARED_PACKAGE, Example
-from pytpc_evaluation.demo.ros2_params import params_of, save_params
+from pytpc_evaluation.demo.ros2_params import save_params
 from pytpc_evaluation.treatment import Treatment
 
 PYTHON = project_root() / ".venv-ros2" / "bin" / "python"
@@ -42,17 +43,21 @@ _DOMAINS = range(1, 100)
 
 
 @dataclass(frozen=True)
+class Program:
+    """How a node is started: the words before its arguments, and variables."""
+
+    command: tuple[str, ...]
+    env: Mapping[str, str]
+
+
+@dataclass(frozen=True)
 class Ros2Robot:
-    """The robot, its static information, and the scripts of its nodes by their names."""
+    """The robot, its static information (in ``folder``, too), and its programs by nodes' names."""
 
     example: Example
     static: StaticInfo
-    scripts: Mapping[str, Path]
-
-    @property
-    def static_file(self) -> Path:
-        """The file with the static information."""
-        return next(iter(self.scripts.values())).parents[2] / MERGED_FILE
+    folder: Path
+    programs: Mapping[str, Program]
 
 
 @dataclass
@@ -89,7 +94,7 @@ class Flown:
 
 
 def prepared(example: Example, out: Path) -> Ros2Robot:
-    """Analyse the package, and write the scripts of its entry points below ``out``.
+    """Analyse the package, and write the scripts of its entry points below ``out``, all in Python.
 
     Raises:
         MissingToolError: ROS 2 is not set up.
@@ -100,7 +105,8 @@ def prepared(example: Example, out: Path) -> Ros2Robot:
     static = analyse([example.folder], load_rules())
     folder = out / "lib" / example.name
     folder.mkdir(parents=True, exist_ok=True)
-    scripts = {}
+    programs = {}
+    env = {"PYTHONPATH": str(example.folder)}
     for unit in static.units:
         module = (unit.script or "").removesuffix(".py").replace("/", ".")
         if not module.startswith(f"{example.name}."):
@@ -108,10 +114,10 @@ def prepared(example: Example, out: Path) -> Ros2Robot:
         path = folder / unit.link_unit
         path.write_text(_ENTRY.format(python=PYTHON, module=module), encoding="utf-8")
         path.chmod(0o755)
-        scripts[unit.link_unit] = path
-    robot = Ros2Robot(example, static, scripts)
-    static.save(robot.static_file)
-    return robot
+        words = (PYTHON, RUN, "--static", out / MERGED_FILE, "--", path)
+        programs[unit.link_unit] = Program(tuple(map(str, words)), env)
+    static.save(out / MERGED_FILE)
+    return Ros2Robot(example, static, out, programs)
 
 
 _ENTRY = """\
@@ -154,8 +160,8 @@ def flown(
     out_dir.mkdir(parents=True, exist_ok=True)
     clear_earlier(out_dir)
     example = robot.example
-    files = [example.parameters, treatment.overlay]
-    save_params(params_of(files, sorted(robot.scripts)), {"seed": str(seed)}, out_dir)
+    words = _arguments(robot, treatment, seed=seed, rate=rate)
+    save_params(words, {"seed": str(seed)}, out_dir)
     robot.static.save(out_dir / MERGED_FILE)
     began = time.monotonic()
     heard = Heard()
@@ -163,28 +169,12 @@ def flown(
     with ExitStack() as started:
         processes = _Processes(out_dir / "ros", domain)
         started.callback(processes.stop)
-        topics = {
-            "/clock": "rosgraph_msgs/Clock",
-            MISSION_DONE: "+std_msgs/Bool",
-            **dict.fromkeys(MARK_TOPICS, "builtin_interfaces/Time"),
-            **dict(example.ros2_types),
-        }
-        words = [f"{topic}={kind}" for topic, kind in topics.items()]
-        processes.listen([_LISTENER, *words], heard)
+        processes.listen([_LISTENER, *_listened(example)], heard)
         path = str(SHARED_PACKAGE / "src")
-        processes.start("observer", [example.observer, str(seed)], PYTHONPATH=path)
-        given = [word for file in files for word in ("--params-file", str(file.absolute()))]
-        given += ["-p", f"rate:={rate}"] if rate else []
-        for name, script in robot.scripts.items():
-            own = ["-p", f"seed:={seed}"] if f"/{name}" == example.simulator else []
-            words = ["--static", str(out_dir / MERGED_FILE), "--", str(script), "--ros-args"]
-            processes.start(
-                name,
-                [RUN, *words, *given, *own],
-                PYTHONPATH=str(example.folder),
-                TPC_SINK="file",
-                TPC_FOLDER=str(out_dir / REPORTS_FOLDER),
-            )
+        processes.start("observer", [PYTHON, example.observer, str(seed)], {"PYTHONPATH": path})
+        reports = {"TPC_SINK": "file", "TPC_FOLDER": str(out_dir / REPORTS_FOLDER)}
+        for name, program in robot.programs.items():
+            processes.start(name, [*program.command, *words[name]], {**program.env, **reports})
         ended = ""
         while not ended:
             time.sleep(_POLL_S)
@@ -201,6 +191,28 @@ def flown(
     return Flown(ended, time.monotonic() - began, heard, counter.count().reports)
 
 
+def _arguments(
+    robot: Ros2Robot, treatment: Treatment, *, seed: int, rate: float
+) -> dict[str, list[str]]:
+    """The arguments of each node; the seed is the simulator's."""
+    files = (robot.example.parameters, treatment.overlay)
+    words = [word for file in files for word in ("--params-file", str(file.absolute()))]
+    words += ["-p", f"rate:={rate}"] if rate else []
+    own = {robot.example.simulator: ["-p", f"seed:={seed}"]}
+    return {name: ["--ros-args", *words, *own.get(f"/{name}", ())] for name in robot.programs}
+
+
+def _listened(example: Example) -> list[str]:
+    """What the listener hears: topics with their types."""
+    topics = {
+        "/clock": "rosgraph_msgs/Clock",
+        MISSION_DONE: "+std_msgs/Bool",
+        **dict.fromkeys(MARK_TOPICS, "builtin_interfaces/Time"),
+        **dict(example.ros2_types),
+    }
+    return [f"{topic}={kind}" for topic, kind in topics.items()]
+
+
 class _Processes:
     """The processes of a mission; what they print is in files of ``folder``."""
 
@@ -208,13 +220,14 @@ class _Processes:
         folder.mkdir(exist_ok=True)
         self._folder = folder
         kept = {name: os.environ[name] for name in ("HOME", "LANG") if name in os.environ}
-        self._env = {**kept, "PATH": os.defpath, **domain}
+        self._env = {**kept, "PATH": os.defpath}
+        self._domain = domain
         self._running: dict[str, subprocess.Popen[str]] = {}
         self._reader: threading.Thread | None = None
 
     def listen(self, words: Sequence[Path | str], heard: Heard) -> None:
         """Start the listener, and take in what it tells until it is stopped."""
-        listener = self.start("listener", words, output=subprocess.PIPE)
+        listener = self.start("listener", [PYTHON, *words], {}, output=subprocess.PIPE)
 
         def take_in() -> None:
             assert listener.stdout is not None
@@ -226,13 +239,18 @@ class _Processes:
         self._reader.start()
 
     def start(
-        self, name: str, words: Sequence[Path | str], *, output: int | None = None, **env: str
+        self,
+        name: str,
+        words: Sequence[Path | str],
+        env: Mapping[str, str],
+        *,
+        output: int | None = None,
     ) -> subprocess.Popen[str]:
-        """Start a program under the interpreter of ROS 2."""
+        """Start a program, with these variables besides those of the graph."""
         with (self._folder / f"{name}.log").open("w", encoding="utf-8") as log:
             process = subprocess.Popen(
-                [PYTHON, *words],
-                env={**self._env, **env},
+                words,
+                env={**self._env, **env, **self._domain},
                 stdin=subprocess.DEVNULL,
                 stdout=log if output is None else output,
                 stderr=log,
