@@ -11,7 +11,7 @@ from ros2_graph import PATIENCE_S
 
 LIBRARIES = (
     *("rclcpp", "rcl", "rcutils", "rcpputils", "rmw", "rosidl_runtime_c", "rosidl_typesupport_cpp"),
-    *("tracetools", "class_loader", "component_manager", "statistics_collector"),
+    *("tracetools", "libstatistics_collector"),
 )
 MESSAGES = ("std_msgs", "rcl_interfaces", "builtin_interfaces", "statistics_msgs")
 

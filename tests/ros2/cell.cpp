@@ -32,8 +32,8 @@ namespace cell {
 class Gauge : public rclcpp::Node {
 public:
   explicit Gauge(const rclcpp::NodeOptions &Options)
-      : Node("gauge", rclcpp::NodeOptions(Options).use_intra_process_comms(
-                          true)) {
+      : Node("gauge",
+             rclcpp::NodeOptions(Options).use_intra_process_comms(true)) {
     Low = declare_parameter("limits.low", 4.5);
     Out = create_publisher<Bool>("alarm", 1);
     In = create_subscription<Pressure>(
@@ -76,9 +76,7 @@ public:
     declareIfNotDeclared(Parameters, Name + ".least", 1.5);
     Least = Parameters->get_parameter(Name + ".least").as_double();
   }
-  bool isHigh(double Pressure) const {
-    return Pressure > High;
-  }
+  bool isHigh(double Pressure) const { return Pressure > High; }
   bool isLeast(double Pressure) const { return Pressure < Least; }
 
 private:
@@ -94,14 +92,14 @@ public:
             rclcpp::NodeOptions(Options).use_intra_process_comms(true))) {
     By.configure(Node, "by");
     Out = Node->create_publisher<Bool>("alarm", 1);
-    In = Node->create_subscription<Pressure>(
-        "pressure", Reliable, [this](Pressure::UniquePtr Of) {
-          Bool Message;
-          if (By.isHigh(Of->data))
-            Out->publish(Message);
-          if (By.isLeast(Of->data))
-            Out->publish(Message);
-        });
+    In = Node->create_subscription<Pressure>("pressure", Reliable,
+                                             [this](Pressure::UniquePtr Of) {
+                                               Bool Message;
+                                               if (By.isHigh(Of->data))
+                                                 Out->publish(Message);
+                                               if (By.isLeast(Of->data))
+                                                 Out->publish(Message);
+                                             });
   }
   rclcpp::node_interfaces::NodeBaseInterface::SharedPtr
   get_node_base_interface() const {
@@ -118,11 +116,12 @@ private:
 class Pump : public rclcpp::Node {
 public:
   explicit Pump(const rclcpp::NodeOptions &Options)
-      : Node("pump", rclcpp::NodeOptions(Options).use_intra_process_comms(
-                         true)) {
+      : Node("pump",
+             rclcpp::NodeOptions(Options).use_intra_process_comms(true)) {
     Wanted = static_cast<size_t>(declare_parameter("listeners", 2));
     Out = create_publisher<Pressure>("pressure", Reliable);
-    Timer = create_wall_timer(std::chrono::milliseconds(20), [this] { turn(); });
+    Timer =
+        create_wall_timer(std::chrono::milliseconds(20), [this] { turn(); });
   }
 
 private:

@@ -46,7 +46,7 @@ pytestmark = [
 def cell(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A package of components as ament installs it, beside its static information."""
     folder = tmp_path_factory.mktemp("cell")
-    compile_on_rclcpp(HERE / "cell.cpp", folder / "libcell.so", "-shared")
+    compile_on_rclcpp(HERE / "cell.cpp", folder / "libcell.so", "-shared", "-lclass_loader")
     index = folder / "share/ament_index/resource_index/rclcpp_components/cell"
     index.parent.mkdir(parents=True)
     index.write_text("".join(f"{kind};libcell.so\n" for kind in COMPONENTS))
