@@ -14,7 +14,7 @@ from time import time_ns
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
     from types import ModuleType
 
 MODULE = "rclpy.node"
@@ -135,6 +135,17 @@ def kind() -> Any:  # noqa: ANN401
 def name_of(node: object) -> str:
     """The fully qualified name of a node of the program; empty if it is none."""
     return next((one.name for one in _State.nodes if one.node() is node), "")
+
+
+def name_of_owner(values: Iterable[object]) -> str:
+    """The name of the node that has one of these timers, subscriptions and so on."""
+    given = {id(each) for each in values}
+    for known in list(_State.nodes):
+        node = known.node()
+        for owned in [] if node is None else list(vars(node).values()):
+            if type(owned) is list and any(id(each) in given for each in owned):
+                return known.name
+    return ""
 
 
 def domain() -> int | None:

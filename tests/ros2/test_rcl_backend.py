@@ -201,6 +201,69 @@ def test_the_first_node_names_the_process(peer: Peer, start: Start) -> None:
     assert node.finish() == 0
 
 
+SECOND = "/second"
+
+
+def nodes_of(folder: Path) -> dict[str, set[str]]:
+    """The nodes of each key, without the key's first 36 characters."""
+    return {key[36:]: set(nodes) for key, nodes in read(folder).nodes_of.items()}
+
+
+# Two nodes of 100 bytes, an object within the second one, and one of a plugin that reads on the
+# second node. Of an object that neither is nor reads anything, only the process is known.
+def test_each_object_is_of_its_node(start: Start, tmp_path: Path) -> None:
+    node = start(sink="file")
+    node.say("node second")
+    # At first nothing is known of the plugin.
+    node.say("of 5000 1")
+    for line in (f"made {GUARD} 1000 100", f"made {SECOND} 2000 100", "of 1000 2", "of 2000 2"):
+        node.say(line)
+    node.say("of 2050 2")
+    node.say(f"read_in {SECOND} by.limit 5000 8")
+    node.say("of 9000 2")
+    node.say("read_on of.node")
+    assert node.finish() == 0
+    assert nodes_of(tmp_path / "reports") == {
+        "": {SECOND}, "#2": {GUARD}, "#3": {SECOND}, "#4": {SECOND}, "#5": {GUARD},
+    }  # fmt: skip
+    names = {one.name for one in read(tmp_path / "reports").names if one.name}
+    assert names == {f"{SECOND}/by.limit", f"{SECOND}/of.node"}
+
+
+# A container unloads a component, and the next one gets its memory: also in the thread's tables.
+@pytest.mark.parametrize("policy", ["every", "edges", "light"])
+def test_another_node_in_the_same_memory_reports_apart(
+    start: Start, tmp_path: Path, policy: str
+) -> None:
+    node = start(sink="file", policy=policy)
+    for name in ("/old", "/old", "/new"):
+        node.say(f"made {name} 1000 100")
+        node.say(f"read_in {name} limit 1000 100")
+        node.say("of 1000 3")
+        node.say("of 1050 3")
+    assert node.finish() == 0
+    assert nodes_of(tmp_path / "reports") == {
+        "": {"/old"}, "#2": {"/old"}, "#3": {"/new"}, "#4": {"/new"},
+    }  # fmt: skip
+
+
+def test_a_listener_hears_the_nodes_with_the_first_reports(peer: Peer, start: Start) -> None:
+    node = start(sink="topic")
+    node.say(f"made {GUARD} 1000 100")
+    node.say(f"made {SECOND} 2000 100")
+    node.say("of 1000 2")
+    node.say("of 2000 3")
+    (batch,) = peer.ask("heard", 5)["batches"]
+    assert batch.count("#2,node:/second") == 1
+    assert ",node:" not in batch.replace("#2,node:/second", "").split("\n", 1)[1]
+    assert peer.ask("set", SETTINGS, sink="rosout") == [[True, ""]]
+    node.say("of 1000 2")
+    node.say("of 2000 3")
+    logs = [log for log in peer.ask("heard", 10)["logs"] if log[3].startswith("threshold_inf")]
+    assert sorted(logger for _, _, logger, _ in logs) == ["robot1.guard"] * 2 + ["second"] * 3
+    assert node.finish() == 0
+
+
 def test_a_child_of_a_node_writes_to_a_file_alone(peer: Peer, start: Start, tmp_path: Path) -> None:
     node = start(sink="topic")
     node.say("report 2 0")
