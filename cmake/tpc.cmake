@@ -259,8 +259,11 @@ macro(_tpc_instrument)
   if(TPC_CONSTANTS)
     _tpc_add_plugin_option("-tpc-constants" "${_tpc_on}")
   endif()
-  _tpc_read_flags(last _tpc_last_flags)
-  _tpc_add_link_options("${_tpc_last_flags}" "${_tpc_on}")
+  # CMake puts the options before the libraries.
+  foreach(_tpc_kind IN ITEMS log last)
+    _tpc_read_flags(${_tpc_kind} _tpc_last_flags)
+    _tpc_add_link_options("${_tpc_last_flags}" "${_tpc_on}")
+  endforeach()
 endmacro()
 
 # Passes options to the linker if `condition` (a generator expression; empty: always) is 1. Commas

@@ -8,6 +8,7 @@
 #include "control/Throws.h"
 #include "instrument/Instances.h"
 #include "instrument/InstrumentBranches.h"
+#include "instrument/InstrumentNodes.h"
 #include "instrument/InstrumentReads.h"
 #include "memory/AccessIndex.h"
 #include "memory/Aliases.h"
@@ -237,6 +238,9 @@ PreservedAnalyses LinkUnitPass::run(Module &M, ModuleAnalysisManager &AM) {
   if (F.Failure.empty() && Opts.Instrument) {
     // The module is verified with both.
     SmallVector<Instruction *, 0> Names = insertNames(M, F.Names);
+    if (!F.Reports.empty() || !F.Names.empty())
+      append_range(Names,
+                   insertNodes(M, *AM.getResult<RuleTableAnalysis>(M).Tables));
     F.Failure = insertReports(M, F.Reports);
     if (!F.Failure.empty())
       for (Instruction *I : reverse(Names))

@@ -55,6 +55,17 @@ StringRef Rules::symbolAt(StringRef Class, unsigned Slot) const {
   return It == Symbols.end() ? StringRef() : StringRef(It->second);
 }
 
+std::vector<std::string> Rules::nodeClasses() const {
+  SetVector<StringRef> Found;
+  for (const auto &Entry : ByName)
+    for (const Rule &Row : Entry.second)
+      if (Row.Resolve == "node")
+        Found.insert(StringRef(Row.Function).rsplit("::").first);
+  std::vector<std::string> Sorted(Found.begin(), Found.end());
+  llvm::sort(Sorted);
+  return Sorted;
+}
+
 Expected<Rules> Rules::load(const Options &Opts) {
   Rules R;
   auto Add = [&](StringRef Text, StringRef Origin) -> Error {

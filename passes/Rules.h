@@ -166,6 +166,8 @@ public:
   bool showsOverrides() const { return ShowsOverrides; }
   /// True if those of the class with the mangled name \p Class do not.
   bool keepsOverrides(llvm::StringRef Class) const;
+  /// The qualified names of the classes that are nodes of ROS 2, sorted.
+  std::vector<std::string> nodeClasses() const;
   /// True if an object of the class with the qualified name \p Class is a tool
   /// that an overriding function is handed, not a part of the robot.
   bool isTool(llvm::StringRef Class) const;

@@ -40,11 +40,14 @@ protected:
 /// Reports that wait in a sink.
 class Outbox {
 public:
-  using Take = std::function<void(int64_t Stamp, std::string Text)>;
+  /// \p Node is the one whose report it is; null for the one that the process
+  /// is named after, and for a text of several lines.
+  using Take =
+      std::function<void(int64_t Stamp, std::string Text, const char *Node)>;
 
-  /// Whether somebody listens. If so, the sink wakes the helper thread for new
-  /// reports.
-  virtual void setSubscribed(bool Is) = 0;
+  /// How many listen. If any do, the sink wakes the helper thread for new
+  /// reports; who has come since the last call gets all names.
+  virtual void setSubscribers(size_t Count) = 0;
 
   /// Passes what waits to \p Send as texts of messages, each with a ROS time in
   /// nanoseconds, if it has waited for long enough or with \p AtOnce.
@@ -70,7 +73,7 @@ public:
 
   /// Whether poll() has nothing to do until somebody subscribes.
   virtual bool isAdvertised() const = 0;
-  /// Whether poll() may see a subscriber that setSubscribed() was not told of.
+  /// Whether poll() may see a subscriber that setSubscribers() was not told of.
   virtual bool hasToLook() const { return false; }
 
   /// From the helper thread, about every 20 ms while the sink is chosen and

@@ -407,6 +407,16 @@ static void reopen(LightSite &L, uint64_t Count) {
   L.Next = LightSite::Usual;
 }
 
+void releaseWords(const Site &S) {
+  LightSite *L = S.Light.load(std::memory_order_acquire);
+  if (!L)
+    return;
+  std::lock_guard<std::mutex> Guard(making());
+  auto Owner = L->Module ? owners().find(L->Module) : owners().end();
+  if (Owner != owners().end() && Owner->second == L)
+    L->Module->Object = nullptr;
+}
+
 /// Hands the words of a module to \p L if it was evaluated far more often in
 /// the last period than the object that has them.
 static void handWordsTo(LightSite &L) {

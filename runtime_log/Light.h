@@ -35,6 +35,9 @@ void beginLight();
 /// Returns how many there were. With \p IsEnd, also counts what has no sample.
 uint64_t flushLight(Sink &To, bool IsEnd);
 
+/// The object of \p S is gone: what is made at its address counts elsewhere.
+void releaseWords(const Site &S);
+
 /// In the child of a fork, where only the calling thread exists.
 void lightAfterFork();
 

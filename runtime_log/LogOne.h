@@ -33,7 +33,8 @@ __attribute__((visibility("default"))) void log_one_of(char *key, bool result,
 ///
 /// \param key    the key of the read, as in the static information
 /// \param handle the ros::NodeHandle that the name is relative to; null for the
-///               node itself
+///               node itself. With ROS 2, an object that log_node was called
+///               with
 /// \param name   a std::string, or with \p text a C string
 ///
 /// Safe in any thread; never throws.
@@ -54,5 +55,16 @@ log_read_of(char *key, const void *handle, const void *name, bool text,
 __attribute__((visibility("default"))) void
 log_read_in(char *key, const char *node, const void *name, bool text,
             const void *object, unsigned long size) noexcept;
+
+/// Reports that a node of ROS 2 was made. A process may have several.
+///
+/// \param node   its full name, such as `/robot1/guard`; null or empty if it is
+///               not known: nothing is reported then
+/// \param object the node, of \p size bytes with all that is derived from it;
+///               or something by which its parameters are read
+///
+/// Safe in any thread; never throws.
+__attribute__((visibility("default"))) void
+log_node(const char *node, const void *object, unsigned long size) noexcept;
 
 #endif // TPC_LOGONE_H

@@ -2,6 +2,7 @@
 #include "RclState.h"
 
 #include "Clock.h"
+#include "ReadNames.h"
 #include "Ros.h"
 #include "Runtime.h"
 
@@ -31,14 +32,18 @@ template <typename Function> static Function *next(const char *Name) {
 
 static void noteNode(const void *Node, const char *Name) {
   // The backend makes a node of this name.
-  if (!std::strcmp(Name, "_tpc") || RclState::of().Node.load())
+  if (!std::strcmp(Name, "_tpc"))
     return;
   static auto *FullName =
       next<const char *(const void *)>("rcl_node_get_fully_qualified_name");
   const char *Full = FullName ? FullName(Node) : nullptr;
   if (!Full)
     return;
+  ReadNames::all().addNode(Full, Node, 1);
   RclState &S = RclState::of();
+  ++S.Nodes;
+  if (S.Node.load())
+    return;
   const char *Kept = strdup(Full), *Nobody = nullptr;
   S.NodeSince = Clock::steady();
   S.Node.compare_exchange_strong(Nobody, Kept);

@@ -18,6 +18,8 @@ struct RclState {
   /// The full name of the first node; null before it. Never freed.
   std::atomic<const char *> Node{nullptr};
   std::atomic<int64_t> NodeSince{0}; ///< steady time
+  /// How many nodes were made.
+  std::atomic<uint32_t> Nodes{0};
   /// Whether a clock of the program follows /clock, and what it was last told.
   std::atomic<bool> IsSimulated{false};
   std::atomic<int64_t> SimulatedNs{0};

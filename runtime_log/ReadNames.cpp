@@ -2,10 +2,13 @@
 #include "ReadNames.h"
 
 #include "LogOne.h"
+#include "Modes.h"
+#include "Ros.h"
 #include "Runtime.h"
 #include "Threads.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace tpc {
@@ -50,9 +53,35 @@ void ReadNames::tellOf(const Reader &R) {
     tell(*R.Name, At->second);
 }
 
+/// Gives the node of \p S, which has the evaluations of \p Object, if it is not
+/// the one that the process is named after.
+void ReadNames::tellNode(Site &S, const void *Object) {
+  const std::string *Node = Nodes.of(Object);
+  const char *Known = S.Node.load(std::memory_order_relaxed);
+  if (!Node || *Node == (Known ? Known : rosNodeName()))
+    return;
+  S.Node.store(Node->c_str(), std::memory_order_release);
+  if (!keep(S.Key + ",node:" + *Node, ObjectCount))
+    warnOfObjects();
+}
+
+/// The same for the objects in these bytes, of which more is known now.
+void ReadNames::tellNodes(const void *Object, uint64_t Size) {
+  const auto Begin = reinterpret_cast<uintptr_t>(Object);
+  const uintptr_t End = Begin + std::max<uint64_t>(Size, 1);
+  for (auto &[S, Address] : Compared)
+    if (Begin <= Address && Address < End)
+      tellNode(*S, reinterpret_cast<const void *>(Address));
+}
+
 void ReadNames::add(const char *Key, const std::string &Name,
-                    const void *Object, uint64_t Size) {
+                    const void *Object, uint64_t Size,
+                    const std::string &Node) {
   std::lock_guard<std::mutex> Guard(Lock);
+  if (Object && !Node.empty()) {
+    Nodes.add(Node, Object, Size);
+    tellNodes(Object, Size);
+  }
   const std::string *Kept = keep(std::string(Key) + "," + Name, NameCount);
   if (!Kept && !IsFull) {
     IsFull = true;
@@ -75,19 +104,20 @@ void ReadNames::add(const char *Key, const std::string &Name,
   if (TellsObjects || IsFirst)
     return tellOf(R);
   TellsObjects = true;
-  for (auto &[Evaluated, Number] : Compared)
-    tell(Evaluated, Number);
+  for (auto &[S, Address] : Compared)
+    tell(S->Key, Objects[Address]);
   for (const Reader &Each : Readers)
     tellOf(Each);
 }
 
-void ReadNames::addObject(const std::string &Key, const void *Object) {
+void ReadNames::addObject(Site &S, const void *Object) {
   std::lock_guard<std::mutex> Guard(Lock);
   auto Address = reinterpret_cast<uintptr_t>(Object);
-  auto [At, IsNew] =
-      Objects.try_emplace(Address, static_cast<uint32_t>(Objects.size() + 1));
-  Compared.emplace_back(Key, At->second);
-  tell(Key, At->second);
+  auto [At, IsNew] = Objects.try_emplace(Address, LastObject + 1);
+  LastObject += IsNew;
+  Compared.emplace_back(&S, Address);
+  tell(S.Key, At->second);
+  tellNode(S, Object);
   if (!IsNew)
     return;
   for (const Reader &R : Readers) {
@@ -96,6 +126,44 @@ void ReadNames::addObject(const std::string &Key, const void *Object) {
     if (Address < R.End)
       tell(*R.Name, At->second);
   }
+}
+
+void ReadNames::addNode(const std::string &Node, const void *Object,
+                        uint64_t Size) {
+  const auto Begin = reinterpret_cast<uintptr_t>(Object);
+  const uintptr_t End = Begin + std::max<uint64_t>(Size, 1);
+  bool IsOther;
+  {
+    std::lock_guard<std::mutex> Guard(Lock);
+    IsOther = Nodes.replace(Node, Object, Size);
+    if (IsOther)
+      forget(Begin, End);
+    else
+      tellNodes(Object, Size);
+  }
+  // Not while Lock is held: a fork takes these two the other way round.
+  if (IsOther && TheSites)
+    sites().forget(Begin, End);
+}
+
+/// The objects in these bytes are gone.
+void ReadNames::forget(uintptr_t Begin, uintptr_t End) {
+  Objects.erase(Objects.lower_bound(Begin), Objects.lower_bound(End));
+  Compared.erase(std::remove_if(Compared.begin(), Compared.end(),
+                                [&](const auto &One) {
+                                  return Begin <= One.second &&
+                                         One.second < End;
+                                }),
+                 Compared.end());
+  for (auto At = Readers.begin(); At != Readers.end();)
+    At = Begin <= At->Begin && At->Begin < End ? Readers.erase(At)
+                                               : std::next(At);
+}
+
+std::string ReadNames::nodeOf(const void *Object) {
+  std::lock_guard<std::mutex> Guard(Lock);
+  const std::string *Node = Object ? Nodes.of(Object) : nullptr;
+  return Node ? *Node : "";
 }
 
 void ReadNames::startAgain() {
@@ -120,6 +188,24 @@ void ReadNames::give(Sink &To, int64_t Now) {
 
 using namespace tpc;
 
+/// What instrumented code passes as a name: a C string, or a std::string.
+static std::string textOf(const void *Name, bool IsText) {
+  return IsText ? std::string(static_cast<const char *>(Name))
+                : *static_cast<const std::string *>(Name);
+}
+
+void log_node(const char *node, const void *object,
+              unsigned long size) noexcept {
+  try {
+    Thread *T = ThisThread ? ThisThread : makeThread();
+    ReportMark Mark(*T);
+    if (Mark && node && *node && object)
+      ReadNames::all().addNode(node, object, size);
+  } catch (...) {
+    // A name that cannot be reported is not worth a node.
+  }
+}
+
 void log_read(char *key, const void *handle, const void *name,
               bool text) noexcept {
   log_read_of(key, handle, name, text, nullptr, 0);
@@ -132,13 +218,9 @@ void log_read_in(char *key, const char *node, const void *name, bool text,
     ReportMark Mark(*T);
     if (!Mark || !node || !*node)
       return;
-    std::string Full = node;
-    Full += '/';
-    if (text)
-      Full += static_cast<const char *>(name);
-    else
-      Full += *static_cast<const std::string *>(name);
-    ReadNames::all().add(key, Full, object, size);
+    const std::string Node = node;
+    ReadNames::all().add(key, Node + "/" + textOf(name, text), object, size,
+                         Node);
   } catch (...) {
     // A name that cannot be reported is not worth a node.
   }
@@ -151,11 +233,13 @@ void log_read_of(char *key, const void *handle, const void *name, bool text,
     ReportMark Mark(*T);
     if (!Mark)
       return;
-    const std::string &Name = text
-                                  ? std::string(static_cast<const char *>(name))
-                                  : *static_cast<const std::string *>(name);
-    if (std::string Full = resolveName(handle, Name); !Full.empty())
-      ReadNames::all().add(key, Full, object, size);
+    const std::string Name = textOf(name, text);
+    // With ROS 2 the handle belongs to a node, or is one.
+    const std::string Node = ReadNames::all().nodeOf(handle);
+    const std::string Full =
+        Node.empty() ? resolveName(handle, Name) : Node + "/" + Name;
+    if (!Full.empty())
+      ReadNames::all().add(key, Full, object, size, Node);
   } catch (...) {
     // A name that cannot be reported is not worth a node.
   }

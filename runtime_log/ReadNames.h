@@ -10,10 +10,14 @@
 // given with each name that was read in the object, and with each key that it
 // evaluates.
 //
+// If the process has several nodes, it also gives the node of each key whose
+// evaluations are not those of the node that the process is named after.
+//
 //===----------------------------------------------------------------------===//
 #ifndef TPC_READNAMES_H
 #define TPC_READNAMES_H
 
+#include "NodeRanges.h"
 #include "Sink.h"
 
 #include <atomic>
@@ -28,6 +32,8 @@
 
 namespace tpc {
 
+struct Site;
+
 class ReadNames {
 public:
   static constexpr size_t Most = 10'000;
@@ -40,13 +46,21 @@ public:
   /// Keeps \p Name for the read \p Key, from any thread. Beyond Most names
   /// nothing is kept, with one warning.
   /// It was read in the object at \p Object, of \p Size bytes, unless that is
-  /// null.
+  /// null, and of \p Node if that is one of several in this process.
   void add(const char *Key, const std::string &Name, const void *Object,
-           uint64_t Size);
+           uint64_t Size, const std::string &Node = {});
 
-  /// Keeps that the site \p Key has the evaluations of \p Object. Beyond Most
-  /// such facts about objects nothing is kept, with one warning.
-  void addObject(const std::string &Key, const void *Object);
+  /// Keeps that \p S has the evaluations of \p Object. Beyond Most such facts
+  /// about objects nothing is kept, with one warning.
+  void addObject(Site &S, const void *Object);
+
+  /// The node \p Node was made, in the object at \p Object. If another node
+  /// was there before, the sites of its objects are left to them.
+  void addNode(const std::string &Node, const void *Object, uint64_t Size);
+
+  /// The name of the node that \p Object is, or belongs to; empty if it is not
+  /// known.
+  std::string nodeOf(const void *Object);
 
   /// Gives \p To the names that it has not got; all of them if it is another
   /// sink than before, and again after 1 s, 2 s and so on up to every 32 s.
@@ -74,6 +88,9 @@ private:
   const std::string *keep(std::string Text, size_t &Count);
   void tell(const std::string &Of, uint32_t Object);
   void tellOf(const Reader &R);
+  void tellNode(Site &S, const void *Object);
+  void tellNodes(const void *Object, uint64_t Size);
+  void forget(uintptr_t Begin, uintptr_t End);
   void warnOfObjects();
 
   std::mutex Lock; ///< for everything that follows
@@ -89,7 +106,9 @@ private:
   std::map<std::string, const std::string *, std::less<>> FirstNames;
   std::set<Reader> Readers;
   std::map<uintptr_t, uint32_t> Objects; ///< those that compare, by address
-  std::vector<std::pair<std::string, uint32_t>> Compared; ///< keys, of objects
+  uint32_t LastObject = 0;               ///< the number of the newest one
+  std::vector<std::pair<Site *, uintptr_t>> Compared; ///< sites, of objects
+  NodeRanges Nodes;
   bool TellsObjects = false; ///< a read has read under different names
   std::atomic<bool> Any{false};
 };

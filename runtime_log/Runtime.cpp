@@ -383,6 +383,8 @@ int64_t Runtime::runDue(int64_t Now) {
   Sink &S = *NowSink.load();
   bool IsPolled = S.isPolled();
   if (IsPolled && Now >= NextPoll) {
+    // Whoever reads a report should know by then whose it is.
+    ReadNames::all().give(S, Now);
     S.poll();
     NextPoll = Now + PollNs;
   }

@@ -1,6 +1,7 @@
 //===- Sites.cpp ----------------------------------------------------------===//
 #include "Sites.h"
 
+#include "Light.h"
 #include "ReadNames.h"
 #include "Runtime.h"
 
@@ -96,7 +97,7 @@ Site *Sites::make(const char *Key, const void *Object) {
          " objects evaluate comparison " + Key + "; the others share " + Key +
          "#0, and so for every comparison");
   if (Object && !IsShared)
-    ReadNames::all().addObject(S->Key, Object);
+    ReadNames::all().addObject(*S, Object);
   return S;
 }
 
@@ -127,6 +128,33 @@ void Sites::bind(const char *Key, const void *Object, Site &S) {
     T = Larger;
   }
   Bound += Put(*T, Key, Object, &S);
+}
+
+void Sites::forget(uintptr_t Begin, uintptr_t End) {
+  // No key begins with zeros, so that nothing is found at its place.
+  static auto &Nobody =
+      *new Site(std::string(sizeof(Site::Head), '\0'), sizeof(Site::Head), 0);
+  const auto IsIn = [&](const void *Object) {
+    const auto Address = reinterpret_cast<uintptr_t>(Object);
+    return Begin <= Address && Address < End;
+  };
+  std::vector<Site *> Gone;
+  {
+    std::lock_guard<std::mutex> Guard(Making);
+    for (uint32_t Number = 1; Number <= size(); ++Number)
+      for (auto &[Object, S] : (*this)[Number].Instances)
+        if (IsIn(Object)) {
+          // Its number stays taken.
+          Object = nullptr;
+          Gone.push_back(S);
+        }
+    if (const Table *T = Current.load(std::memory_order_relaxed))
+      for (uint64_t I = 0; I <= T->Mask; ++I)
+        if (Entry &E = T->Entries[I]; E.Key.load() && IsIn(E.Object))
+          E.Found.store(&Nobody, std::memory_order_release);
+  }
+  for (Site *S : Gone)
+    releaseWords(*S);
 }
 
 void Sites::afterFork() {

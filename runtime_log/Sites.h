@@ -70,6 +70,9 @@ struct Site {
   /// gave up. The store's lock is held while they change.
   DropCount Evicted;
   int8_t LastEvicted = -1;
+  /// The node whose object it is of, if that is known and not the one that the
+  /// process is named after. Never freed.
+  std::atomic<const char *> Node{nullptr};
   /// What the policy `light` knows about it.
   std::atomic<LightSite *> Light{nullptr};
 };
@@ -104,6 +107,10 @@ public:
 
   /// The number of sites; their numbers begin with 1.
   uint32_t size() const { return Size.load(std::memory_order_acquire); }
+
+  /// The objects at these addresses are gone: others that are made there get
+  /// sites of their own.
+  void forget(uintptr_t Begin, uintptr_t End);
 
   /// Call before and after a fork.
   void lock() { Making.lock(); }

@@ -8,6 +8,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "Clock.h"
+#include "ReadNames.h"
 #include "Ros.h"
 #include "Runtime.h"
 #include "Sink.h"
@@ -40,7 +41,7 @@ public:
   void end() override;
   std::string status() const override;
 
-  void setSubscribed(bool Is) override { Subscribed = Is; }
+  void setSubscribers(size_t Count) override;
   bool send(bool AtOnce, const Take &Send) override;
 
   // Called around fork(), which may happen while another thread holds the lock.
@@ -69,7 +70,7 @@ private:
   TopicStore Store;
   int64_t OldestAt = 0; ///< since when something is waiting
 
-  std::atomic<bool> Subscribed{false};
+  std::atomic<size_t> Subscribed{0}; ///< how many listen
   std::atomic<bool> Something{false}; ///< waits
 };
 
@@ -162,6 +163,15 @@ void TopicSink::take(const ReadName &N) {
     keep([&] { Store.add(N); });
 }
 
+void TopicSink::setSubscribers(size_t Count) {
+  if (Subscribed.exchange(Count) >= Count)
+    return;
+  // The first reports that a new one gets come with their names.
+  ReadNames &Names = ReadNames::all();
+  Names.startAgain();
+  Names.give(*this, Clock::steady());
+}
+
 bool TopicSink::isPolled() const {
   Channel *C = channel();
   return C && (!C->isAdvertised() || (Something && isListenedTo(C)));
@@ -202,17 +212,18 @@ void TopicSink::sendBatches(const TopicStore::Batch &Batch, const Take &Send) {
     ((Text += ",steady:") += seconds(Clock::steady(), 9)) += To.head();
     Text += Part.Text;
     To.Sent += Part.Reports;
-    Send(rosNow(), std::move(Text));
+    Send(rosNow(), std::move(Text), nullptr);
   }
 }
 
 void TopicSink::sendOneByOne(const TopicStore::Batch &Batch, const Take &Send) {
   Channel &To = *channel();
-  forEachLine(Batch, rosNow(), rosTimeIsSimulated(),
-              [&](LineKind Kind, int64_t Ns, std::string_view Text) {
-                To.Sent += Kind == LineKind::Report;
-                Send(Ns, std::string(prefixOf(Kind)).append(Text));
-              });
+  forEachLine(
+      Batch, rosNow(), rosTimeIsSimulated(),
+      [&](LineKind Kind, int64_t Ns, std::string_view Text, const char *Node) {
+        To.Sent += Kind == LineKind::Report;
+        Send(Ns, std::string(prefixOf(Kind)).append(Text), Node);
+      });
 }
 
 void TopicSink::end() {

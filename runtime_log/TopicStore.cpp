@@ -194,54 +194,58 @@ const char *prefixOf(LineKind K) {
   return "";
 }
 
-void forEachLine(
-    const TopicStore::Batch &B, int64_t Now, bool Simulated,
-    const std::function<void(LineKind, int64_t, std::string_view)> &Visit) {
+void forEachLine(const TopicStore::Batch &B, int64_t Now, bool Simulated,
+                 const std::function<void(LineKind, int64_t, std::string_view,
+                                          const char *)> &Visit) {
   for (const TopicStore::Block &Part : B.Blocks)
     forEach(Part, [&](const Head &H, std::string_view Text) {
       const int64_t Ns = H.Guessed && Simulated ? 0 : H.Ns;
+      const char *Node = H.Of->Node.load(std::memory_order_acquire);
       if (H.Kind == LineKind::Report)
         Visit(H.Kind, Ns,
               format(Report{H.Of->Key.c_str(), H.Result, H.Compared,
-                            H.Threshold, H.Outcome}));
+                            H.Threshold, H.Outcome}),
+              Node);
       else
-        Visit(H.Kind, Ns, Text);
+        Visit(H.Kind, Ns, Text, Node);
     });
   for (const auto &[Of, Counts] : B.Accounts)
     Visit(LineKind::Dropped, Now,
           format(Dropped{Of.first.c_str(), 0, Counts.first, Counts.second,
-                         Of.second}));
+                         Of.second}),
+          nullptr);
   for (const std::string &Name : B.Names)
-    Visit(LineKind::Name, Now, Name);
+    Visit(LineKind::Name, Now, Name, nullptr);
 }
 
 std::vector<TopicStore::Lines> linesOf(const TopicStore::Batch &B, int64_t Now,
                                        bool Simulated, size_t MessageBytes) {
   std::vector<TopicStore::Lines> Found(1);
   std::string Span; ///< of the short summaries that follow in the message
-  forEachLine(B, Now, Simulated,
-              [&](LineKind Kind, int64_t Ns, std::string_view Text) {
-                if (Found.back().Text.size() >= MessageBytes) {
-                  Found.emplace_back();
-                  Span.clear();
-                }
-                TopicStore::Lines &Last = Found.back();
-                if (Kind == LineKind::ShortSummary) {
-                  const size_t End = Text.find('\n');
-                  if (Text.substr(0, End) != Span) {
-                    Span = Text.substr(0, End);
-                    (Last.Text += "\n@") += Span;
-                  }
-                  (Last.Text += "\n~") += Text.substr(End + 1);
-                  return;
-                }
-                ((Last.Text += '\n') += seconds(Ns, 7)) += ',';
-                if (Kind == LineKind::Report)
-                  ++Last.Reports;
-                else
-                  Last.Text += prefixOf(Kind);
-                Last.Text += Text;
-              });
+  forEachLine(
+      B, Now, Simulated,
+      [&](LineKind Kind, int64_t Ns, std::string_view Text, const char *) {
+        if (Found.back().Text.size() >= MessageBytes) {
+          Found.emplace_back();
+          Span.clear();
+        }
+        TopicStore::Lines &Last = Found.back();
+        if (Kind == LineKind::ShortSummary) {
+          const size_t End = Text.find('\n');
+          if (Text.substr(0, End) != Span) {
+            Span = Text.substr(0, End);
+            (Last.Text += "\n@") += Span;
+          }
+          (Last.Text += "\n~") += Text.substr(End + 1);
+          return;
+        }
+        ((Last.Text += '\n') += seconds(Ns, 7)) += ',';
+        if (Kind == LineKind::Report)
+          ++Last.Reports;
+        else
+          Last.Text += prefixOf(Kind);
+        Last.Text += Text;
+      });
   if (Found.back().Text.empty())
     Found.pop_back();
   return Found;

@@ -105,14 +105,15 @@ private:
 enum class LineKind : uint8_t { Report, Summary, ShortSummary, Dropped, Name };
 const char *prefixOf(LineKind K);
 
-/// Calls \p Visit(kind, ROS time in ns, text) for everything in \p B.
+/// Calls \p Visit(kind, ROS time in ns, text, node) for everything in \p B; the
+/// node is that of its site (Sites.h), or null.
 ///
 /// \param Now       ROS time of the accounts of what was dropped.
 /// \param Simulated times that were guessed are not those of the node: they
 ///                  are 0, which readers take as not known.
-void forEachLine(
-    const TopicStore::Batch &B, int64_t Now, bool Simulated,
-    const std::function<void(LineKind, int64_t, std::string_view)> &Visit);
+void forEachLine(const TopicStore::Batch &B, int64_t Now, bool Simulated,
+                 const std::function<void(LineKind, int64_t, std::string_view,
+                                          const char *)> &Visit);
 
 /// The lines of \p B, in messages of about \p MessageBytes.
 std::vector<TopicStore::Lines> linesOf(const TopicStore::Batch &B, int64_t Now,

@@ -123,6 +123,7 @@ static bool readFlags(const fs::path &File, Environment &E) {
                                      : Kind == "accept" ? &E.Added.Accept
                                      : Kind == "link"   ? &E.Added.Link
                                      : Kind == "linker" ? &E.Added.Linker
+                                     : Kind == "log"    ? &E.Added.Log
                                      : Kind == "last"   ? &E.Added.Last
                                                         : nullptr;
     if (List)

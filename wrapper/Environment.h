@@ -20,6 +20,7 @@ struct Flags {
   std::vector<std::string> Accept; ///< make clang accept what gcc accepts
   std::vector<std::string> Link;
   std::vector<std::string> Linker; ///< for the linker
+  std::vector<std::string> Log;    ///< for the linker, before all libraries
   std::vector<std::string> Last;   ///< for the linker, at the end
 };
 

@@ -79,6 +79,7 @@ static int runCompiler(bool IsCxx, const fs::path &Self,
                Out.Added.begin(), Out.Added.end());
   for (const std::string &Flag : Out.Dropped)
     Words.erase(std::remove(Words.begin(), Words.end(), Flag), Words.end());
+  Words.insert(Words.begin(), Out.First.begin(), Out.First.end());
   return become(Program, std::move(Words));
 }
 

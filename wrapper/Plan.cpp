@@ -161,6 +161,7 @@ Plan planFor(const Arguments &Asked, const Environment &Around) {
     return Out;
   }
   addPassOptions(Out.Added, passOptions(Around, Output));
+  addForLinker(Out.First, Around.Added.Log);
   addForLinker(Out.Added, Around.Added.Last);
   return Out;
 }

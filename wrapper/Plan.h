@@ -11,6 +11,7 @@
 namespace tpc {
 
 struct Plan {
+  std::vector<std::string> First; ///< flags to add before those of the caller
   std::vector<std::string> Added; ///< flags to add after those of the caller
   /// Flags of the caller that no other flag undoes.
   std::vector<std::string> Dropped;

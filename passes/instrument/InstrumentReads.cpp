@@ -2,6 +2,7 @@
 #include "instrument/InstrumentReads.h"
 
 #include "instrument/Instances.h"
+#include "instrument/InstrumentNodes.h"
 
 #include "llvm/BinaryFormat/Dwarf.h"
 #include "llvm/IR/DebugInfoMetadata.h"
@@ -21,17 +22,6 @@ static constexpr StringLiteral LogOfName = "_Z11log_read_ofPcPKvS1_bS1_m";
 /// `void log_read_in(char *key, const char *node, const void *name, bool text,
 /// const void *object, unsigned long size)`
 static constexpr StringLiteral LogInName = "_Z11log_read_inPcPKcPKvbS3_m";
-
-/// `_ZNK2ns4Node24get_fully_qualified_nameEv` for `ns::Node::method`; empty
-/// if \p Method is in no namespace.
-static std::string nodeNameOf(StringRef Method) {
-  SmallVector<StringRef, 4> Scopes;
-  Method.rsplit("::").first.split(Scopes, "::");
-  std::string Name = "_ZNK";
-  for (StringRef Scope : Scopes)
-    Name += std::to_string(Scope.size()) + Scope.str();
-  return Scopes.size() < 2 ? "" : Name + "24get_fully_qualified_nameEv";
-}
 
 /// The offset in bytes of the field \p Name in the class that \p Method is a
 /// method of; none if the debug information does not have it.
@@ -57,8 +47,7 @@ std::optional<NamedRead> planName(const ParameterRead &Read,
   if (Row.Resolve.empty() || Read.Key.empty())
     return std::nullopt;
   auto *Call = dyn_cast_or_null<CallBase>(Analysed.original(Read.Call));
-  const Function *Callee = Call ? Call->getCalledFunction() : nullptr;
-  if (!Callee)
+  if (!Call)
     return std::nullopt;
   NamedRead R{
       Read.Key,  Call, objectOf(*Call, Row), 0, argument(*Call, Row, Row.Name),
@@ -68,14 +57,16 @@ std::optional<NamedRead> planName(const ParameterRead &Read,
     R.ObjectSize = classOf(*Call->getFunction())->getSizeInBits() / CHAR_BIT;
   }
   if (Row.Kind == Rule::Config) {
-    std::optional<uint64_t> Offset = offsetOf(*Callee, Row.Resolve);
+    const Function *Callee = Call->getCalledFunction();
+    std::optional<uint64_t> Offset =
+        Callee ? offsetOf(*Callee, Row.Resolve) : std::nullopt;
     if (!R.Handle || !Offset || R.Text.empty())
       return std::nullopt;
     R.HandleOffset = *Offset;
     return R;
   }
   if (Row.Resolve == "node")
-    R.NodeName = nodeNameOf(Row.Function);
+    R.NodeName = nodeNameOf(StringRef(Row.Function).rsplit("::").first);
   if (Row.Resolve == "global")
     R.Handle = nullptr;
   else if (!R.Handle)
@@ -148,20 +139,13 @@ static Function *nodeReportFunction(Module &M, StringRef NodeName) {
                               {Pointer, Pointer, Pointer, Type::getInt1Ty(Ctx),
                                Pointer, M.getDataLayout().getIntPtrType(Ctx)},
                               false);
-  auto Weak = [&](StringRef Of, FunctionType *As) {
-    FunctionCallee Callee = M.getOrInsertFunction(Of, As);
-    if (auto *F = dyn_cast<Function>(Callee.getCallee());
-        F && F->isDeclaration() && F->use_empty())
-      F->setLinkage(GlobalValue::ExternalWeakLinkage);
-    return Callee;
-  };
-  FunctionCallee Log = Weak(LogInName, T);
+  FunctionCallee Log = weakFunction(M, LogInName, T);
   if (auto *F = dyn_cast<Function>(Log.getCallee()); F && F->isDeclaration()) {
     F->addParamAttr(3, Attribute::ZExt);
     F->setDoesNotThrow();
   }
   FunctionCallee NameOf =
-      Weak(NodeName, FunctionType::get(Pointer, {Pointer}, false));
+      weakFunction(M, NodeName, FunctionType::get(Pointer, {Pointer}, false));
   auto *F = Function::Create(T, GlobalValue::InternalLinkage, Name, M);
   auto *Look = BasicBlock::Create(Ctx, "", F);
   auto *Report = BasicBlock::Create(Ctx, "", F);

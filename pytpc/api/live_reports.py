@@ -7,6 +7,7 @@ numbered batches on ``/threshold_information``.
 from __future__ import annotations
 
 from collections import Counter, deque
+from dataclasses import replace
 from typing import NamedTuple
 
 from pytpc.diagnosis.results.live import Seen
@@ -14,6 +15,7 @@ from pytpc.ingest.decoders import ROS1, Decoders
 from pytpc.ingest.losses import LossCounter
 from pytpc.ingest.rosout_line import (
     BATCH_PREFIX,
+    NAME_PREFIX,
     Drop,
     Malformed,
     Named,
@@ -36,6 +38,7 @@ from pytpc.ros.ros1.relay import ROSOUT, lines_of
 from pytpc.ros.source import Source
 
 Item = Seen | Summary | ReadName
+Other = Summary | Drop | Named | Malformed | None
 
 _BEGIN = b"threshold_"
 _HOLD_S = 0.5
@@ -64,6 +67,8 @@ class Reports:
         self._logged: Counter[str] = Counter()
         self._order: deque[tuple[float, str]] = deque()
         self._held: deque[_Held] = deque()
+        # The nodes of keys, by key and the node that the process is named after.
+        self._nodes: dict[tuple[str, str], str] = {}
         self.malformed = 0
 
     @property
@@ -117,8 +122,8 @@ class Reports:
             return []
         if report is not None:
             key, result, cmp, thresh, res = report
-            return [Seen(log.stamp_ns, key, node, result, cmp, thresh, res)]
-        item = _item(parse_other(text, node), node)
+            return [Seen(log.stamp_ns, key, self._node(key, node), result, cmp, thresh, res)]
+        item = self._item(parse_other(text, node), node)
         return [] if item is None else [item]
 
     def _text(self, source: Source, data: bytes, steady_s: float) -> list[Item]:
@@ -135,7 +140,12 @@ class Reports:
     def _batch(self, text: str, node: str) -> list[Item]:
         found: list[Item] = []
         span: Span | None = None
-        for line in text.split("\n")[1:]:
+        lines = text.split("\n")[1:]
+        # A batch begins with its reports.
+        for line in lines:
+            if NAME_PREFIX in line:
+                self._learn(parse_other(line, node, stamped=True), node)
+        for line in lines:
             item: object = None
             if is_short(line):
                 item = parse_span(line) if line[0] == SPAN else parse_short(line, span, node)
@@ -144,7 +154,7 @@ class Reports:
             elif line:
                 item = self._line(line, node)
             if isinstance(item, ShortSummary):
-                found.append(item.summary)
+                found.append(self._placed(item.summary))
             elif isinstance(item, Seen | Summary | ReadName):
                 found.append(item)
         return found
@@ -152,17 +162,29 @@ class Reports:
     def _line(self, line: str, node: str) -> Item | None:
         other = parse_other(line, node, stamped=True)
         if other is not None:
-            return _item(other, node)
+            return self._item(other, node)
         found = parse_stamped(line)
         if isinstance(found, Malformed):
             self.malformed += 1
             return None
         time_ns, (key, result, cmp, thresh, res) = found
-        return Seen(time_ns, key, node, result, cmp, thresh, res)
+        return Seen(time_ns, key, self._node(key, node), result, cmp, thresh, res)
 
+    def _node(self, key: str, process: str) -> str:
+        """The node whose key it is, in the process that is named after a node."""
+        return self._nodes.get((key, process), process)
 
-def _item(other: Summary | Drop | Named | Malformed | None, node: str) -> Item | None:
-    """What the ranking takes of a line that is no report."""
-    if isinstance(other, Named):
-        return ReadName(other.key, node, other.name, other.object)
-    return other if isinstance(other, Summary) else None
+    def _placed(self, summary: Summary) -> Summary:
+        node = self._node(summary.key, summary.node)
+        return summary if node == summary.node else replace(summary, node=node)
+
+    def _learn(self, other: Other, node: str) -> None:
+        if isinstance(other, Named) and other.node:
+            self._nodes[other.key, node] = other.node
+
+    def _item(self, other: Other, node: str) -> Item | None:
+        """What the ranking takes of a line that is no report."""
+        self._learn(other, node)
+        if isinstance(other, Named):
+            return None if other.node else ReadName(other.key, node, other.name, other.object)
+        return self._placed(other) if isinstance(other, Summary) else None

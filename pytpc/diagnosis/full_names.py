@@ -121,6 +121,12 @@ class _Names:
             for node, number, name in self.read_in.get(read, ())
             if (node, number) in objects
         }
+        return frozenset(own) or self._of_nodes(key, said)
+
+    def _of_nodes(self, key: str, said: frozenset[tuple[str, str]]) -> frozenset[tuple[str, str]]:
+        """Those of the names that are parameters of the nodes which evaluated ``key``."""
+        nodes = self.recording.nodes_of.get(key, frozenset())
+        own = {one for one in said if any(one[1].startswith(f"{node}/") for node in nodes)}
         return frozenset(own) or said
 
     def thresholds_of(self, key: str) -> tuple[float, ...]:

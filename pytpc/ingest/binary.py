@@ -40,7 +40,7 @@ from pytpc.ingest.condense import Condenser, hot_keys
 from pytpc.ingest.gathering import Channel, Gathering, Progress
 from pytpc.ingest.spool import Rows
 from pytpc.python_runtime import log_layout as layout
-from pytpc.recording.mission import Dropped, ReadName
+from pytpc.recording.mission import Dropped
 
 _IDENTITY = np.dtype([("thread", "<u4"), ("site", "<u4"), ("period", "<u4")])
 
@@ -334,7 +334,7 @@ class _TpcReader:
     def _complaints(self) -> None:
         gathering, header, name = self._gathering, self.header, self._path.name
         for named in self._system.names:
-            gathering.add_name(ReadName(named.key, self._node, named.name, named.object))
+            gathering.add_named(named, self._node)
         stopped = 0
         for dropped in self._system.dropped(self._node):
             gathering.add_dropped(dropped)

@@ -6,7 +6,7 @@ Events go into a spool, which may be on disk; marks, complaints and counters sta
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,7 +16,9 @@ import numpy as np
 
 from pytpc.base.columns import Bools, Floats, Int32s, Int64s, WordTable
 from pytpc.base.wording import many
+from pytpc.ingest.nodes_of_keys import NodesOfKeys
 from pytpc.ingest.parameter_events import ParameterEvent
+from pytpc.ingest.rosout_line import Named
 from pytpc.ingest.short_summary import ShortSummary
 from pytpc.ingest.spool import RUN_ROWS, Spool
 from pytpc.recording.events import Events
@@ -139,6 +141,7 @@ class Gathering:
         self.dropped: Counter[tuple[str, str, str]] = Counter()
         self.dropped_flops: Counter[tuple[str, str, str]] = Counter()
         self.names: dict[ReadName, None] = {}
+        self.node_of_key: defaultdict[tuple[str, str], set[str]] = defaultdict(set)
         self.values: list[SetValue] = []
         self._sampled: set[int] = set()
         self._about: set[int] = set()
@@ -257,6 +260,23 @@ class Gathering:
         self.dropped[word] += dropped.count
         self.dropped_flops[word] += dropped.flops
 
+    def add_named(self, named: Named, node: str) -> None:
+        """Take in what the process of ``node`` said of a name, an object or a node."""
+        if named.node:
+            self.node_of_key[named.key, node].add(named.node)
+        else:
+            self.add_name(ReadName(named.key, node, named.name, named.object))
+
+    def moved_nodes(self) -> NodesOfKeys:
+        """The nodes of the reports of processes that have several."""
+        moves = {
+            (self.keys.code(key), self.nodes.code(node)): self.nodes.code(min(own))
+            for (key, node), own in self.node_of_key.items()
+            # Another process of this name may have had another order.
+            if len(own) == 1
+        }
+        return NodesOfKeys(moves, len(self.nodes.codes))
+
     def add_name(self, name: ReadName) -> None:
         """Take in the name of a parameter; nodes report each several times."""
         if len(self.names) < MOST_NAMES:
@@ -289,11 +309,15 @@ class Gathering:
         """The first 20 records that were skipped."""
         return tuple(record for _, record in self._first)
 
+    def _node_of(self, key: str, node: str) -> str:
+        own = self.node_of_key.get((key, node), ())
+        return next(iter(own)) if len(own) == 1 else node
+
     @property
     def dropped_list(self) -> tuple[Dropped, ...]:
         """All dropped reports, by node, key and reason."""
         found = [
-            Dropped(key, node, count, self.dropped_flops[key, node, why], why)
+            Dropped(key, self._node_of(key, node), count, self.dropped_flops[key, node, why], why)
             for (key, node, why), count in self.dropped.items()
             if count
         ]

@@ -30,7 +30,7 @@ from pytpc.ingest.short_summary import (
     parse_span,
 )
 from pytpc.recording.events import Report
-from pytpc.recording.mission import Dropped, ReadName
+from pytpc.recording.mission import Dropped
 from pytpc.recording.summaries import Summary
 
 
@@ -95,7 +95,7 @@ class Lines:
         elif isinstance(found, Drop):
             self._batches.drop(node, found)
         elif isinstance(found, Named):
-            self.gathering.add_name(ReadName(found.key, node, found.name, found.object))
+            self.gathering.add_named(found, node)
         else:
             what = "time is missing" if found is None else f"{found.what}, column {found.column}"
             self._skip(what, time_ns, text, number)

@@ -43,6 +43,9 @@ class Merged:
 
     def __post_init__(self) -> None:
         self.gathering.flush()
+        self._nodes_of_keys = self.gathering.moved_nodes()
+        for channel in self.gathering.channels:
+            channel.pairs = {self._nodes_of_keys.of_pair(pair) for pair in channel.pairs}
         self.keys, self._key_places = sorted_words(self.gathering.keys.codes)
         self.nodes, self._node_places = sorted_words(self.gathering.nodes.codes)
         self._seen = np.zeros(len(self.keys), np.bool_)
@@ -56,7 +59,7 @@ class Merged:
         """The events in order of time; codes are those of the sorted words."""
         self._once = Once(self.gathering, self.tolerance_ns)
         self.events, self.first_ns, self.last_ns = 0, 2**63 - 1, -(2**63)
-        for rows in self._once.blocks(self.gathering.events.blocks()):
+        for rows in self._once.blocks(map(self._moved, self.gathering.events.blocks())):
             if rows.size:
                 self.events += rows.size
                 self.first_ns = min(self.first_ns, int(rows["time_ns"][0]))
@@ -69,7 +72,7 @@ class Merged:
         """The summaries in the order of their beginning, without duplicates."""
         self.summaries = 0
         held: Rows | None = None
-        for block in self.gathering.summaries.blocks():
+        for block in map(self._moved, self.gathering.summaries.blocks()):
             rows = block if held is None else np.concatenate([held, block])
             cut = int(np.searchsorted(rows["begin_ns"], rows["begin_ns"][-1], "left"))
             yield from self._each_once(rows[:cut])
@@ -205,6 +208,14 @@ class Merged:
 
     def _words(self) -> dict[str, list[str]]:
         return {"key": self.keys, "node": self.nodes}
+
+    def _moved(self, rows: Rows) -> Rows:
+        """With the node of each row where its process has several."""
+        nodes = self._nodes_of_keys.of(rows["key"], rows["node"])
+        if nodes is not rows["node"]:
+            rows = rows.copy()
+            rows["node"] = nodes
+        return rows
 
     def _recoded(self, rows: Rows) -> Rows:
         rows = rows.copy()

@@ -35,6 +35,7 @@ _END = r"[ \t\r\n]*"
 
 _REPORT = re.compile(rf"({KEY}),({_BOOL}),cmp:({DOUBLE}),thresh:({DOUBLE}),res:({_BOOL}){_END}")
 _COUNT = r"[0-9]{1,18}"
+_NODE = "/[A-Za-z0-9_/]{1,1000}"
 _SUMMARY = re.compile(
     rf"({KEY}),({_BOOL}),cmp:({DOUBLE}),thresh:({DOUBLE}),res:({_BOOL}),count:({_COUNT}),"
     rf"flops:({_COUNT}),diff:({DOUBLE});({DOUBLE});({DOUBLE}),abs:({DOUBLE}),"
@@ -46,10 +47,11 @@ _DROPPED = re.compile(
 )
 _BATCH = re.compile(
     rf"#seq:({_COUNT}),count:({_COUNT}),dropped:({_COUNT}),pid:({_COUNT}),steady:({TIME})"
-    rf"(?:,node:(?P<node>/[A-Za-z0-9_/]{{1,1000}}))?{_END}"
+    rf"(?:,node:(?P<node>{_NODE}))?{_END}"
 )
 _NAME = re.compile(
-    rf"({KEY})(?:,(?P<name>/[A-Za-z0-9_/~.]{{1,1000}}))?(?:,of:(?P<object>[1-9][0-9]{{0,8}}))?{_END}"
+    rf"({KEY})(?:,node:(?P<node>{_NODE})|(?:,(?P<name>/[A-Za-z0-9_/~.]{{1,1000}}))?"
+    rf"(?:,of:(?P<object>[1-9][0-9]{{0,8}}))?){_END}"
 )
 _STAMPED = re.compile(rf"({TIME}),")
 BOOLS = {"0": False, "1": True, "False": False, "True": True}
@@ -81,12 +83,15 @@ class Named:
     """The full name of the parameter that the read with this key has read.
 
     ``object`` is the number of the object in which it was read, 0 if the line does not say. Without
-    a name it is the object that evaluates the comparison with this key.
+    a name it is the object that evaluates the comparison with this key. With ``node`` it is
+    neither: the reports with this key are of that node, and not of the one that the process is
+    named after.
     """
 
     key: str
     name: str
     object: int = 0
+    node: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,11 +185,12 @@ def _parse_drop(text: str, place: int) -> Drop | Malformed:
 
 
 def parse_name(text: str, place: int = 0) -> Named | Malformed:
-    """Read ``KEY,/full/name[,of:OBJECT]`` or ``KEY,of:OBJECT`` from this place on."""
+    """Read ``KEY,/full/name[,of:N]``, ``KEY,of:N`` or ``KEY,node:/name`` from this place on."""
     found = _NAME.fullmatch(text, place)
-    if found is None or not (found["name"] or found["object"]):
+    if found is None or not (found["name"] or found["object"] or found["node"]):
         return Malformed("KEY,/full/name is expected", place + 1)
-    return Named(found[1].lower(), found["name"] or "", int(found["object"] or 0))
+    name, number, node = found["name"], found["object"], found["node"]
+    return Named(found[1].lower(), name or "", int(number or 0), node or "")
 
 
 def parse_batch(text: str) -> BatchHead | Malformed:

@@ -25,6 +25,7 @@ from pytpc.python_runtime.log_layout import (
     EDGE_BIT,
     LIVE_CHUNK,
     LONGEST_KEY,
+    NAME,
     NODE_AT,
     NODE_BYTES,
     POLICY,
@@ -347,6 +348,9 @@ class LogFile(MappedFile):
             raw = one.key.encode("utf-8")[:LONGEST_KEY]
             if self.write(SITE, struct.pack("<Iq", one.number, len(raw)) + raw):
                 one.file = self
+            if one.node:
+                raw = f"{one.key},node:{one.node}".encode()[:LONGEST_KEY]
+                self.write(NAME, struct.pack("<Iq", one.number, len(raw)) + raw)
 
     def look(self, now: int) -> None:
         """Once a second, record how the clocks relate, and the node's state in ROS."""

@@ -11,7 +11,9 @@ from collections import deque
 from time import monotonic_ns
 from typing import TYPE_CHECKING, Any
 
+from pytpc.python_runtime import ros_state
 from pytpc.python_runtime.errors import many, warn
+from pytpc.python_runtime.ros2_nodes import lines_of
 from pytpc.python_runtime.sinks import PeriodSummary, summary_line
 from pytpc.python_runtime.waiting import BATCH_NS, TOPIC, Waiting, WaitingSink, line_of
 
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from pytpc.python_runtime.ros2_link import Link
+    from pytpc.python_runtime.sites import Reported
 
 _ROSOUT = "/rosout"
 _QUEUE_MESSAGES = 512
@@ -32,6 +35,8 @@ _KNOWN_NS = 4_000_000_000
 _ACKNOWLEDGED_S = 1.0
 # When the process ends, it spares slow subscribers for this long.
 _LAST_NS = 2_000_000_000
+# A recorder may start later: what keys belong to which node is told again.
+_FIRST_AGAIN_NS, _LAST_AGAIN_NS = 1_000_000_000, 32_000_000_000
 
 
 class TopicSink(WaitingSink):
@@ -46,10 +51,19 @@ class TopicSink(WaitingSink):
     _burst = _QUEUE_MESSAGES // 2
     _pause_s = 0.0
 
-    def __init__(self, link: Callable[[], Link | None]) -> None:
-        """``link`` gives the present one."""
+    def __init__(
+        self,
+        link: Callable[[], Link | None],
+        reported: Callable[[], list[Reported]] = list,
+    ) -> None:
+        """``link`` gives the present one, ``reported`` every key that may report."""
         super().__init__()
         self._link = link
+        self._reported = reported
+        # How many keys of other nodes were told of, to how many subscribers, and when again.
+        self._told = 0, 0
+        self._again_at = 0
+        self._again_ns = _FIRST_AGAIN_NS
         self._on: Link | None = None
         self._publisher: Any = None
         self._kind: Any = None
@@ -101,9 +115,23 @@ class TopicSink(WaitingSink):
     def _messages(self) -> Iterable[tuple[Any, int]]:
         """The messages of what waits, each with the number of reports in it."""
         batch, dropped = self._take_all()
+        batch.extend(self._nodes())
         node = "" if self._on is None else f",node:{self._on.node_name}"
         for text, reports in self._messages_of(batch, dropped, node):
             yield self._kind(data=text), reports
+
+    def _nodes(self) -> list[Waiting]:
+        """Lines that say whose the keys of other nodes are, for whoever has not got them."""
+        lines = lines_of(self._reported())
+        listeners = self._publisher.get_subscription_count()
+        told, now = (len(lines), listeners), monotonic_ns()
+        if not lines or (told == self._told and now < self._again_at):
+            return []
+        self._again_ns = _FIRST_AGAIN_NS if told != self._told else 2 * self._again_ns
+        self._again_at = now + min(self._again_ns, _LAST_AGAIN_NS)
+        self._told = told
+        at_ns = ros_state.time_now_ns()
+        return [Waiting(at_ns, None, None, f"threshold_name:{line}") for line in lines]
 
     def _send(self) -> None:
         """Send some messages; without a pause, all of them."""
@@ -200,6 +228,7 @@ class RosoutSink(TopicSink):
         from builtin_interfaces.msg import Time  # noqa: PLC0415
 
         batch, _ = self._take_all()
+        batch.extend(self._nodes())
         name = "" if self._on is None else self._on.node_name.strip("/").replace("/", ".")
         info = self._kind.INFO
         level = info if isinstance(info, int) else info[0]
@@ -211,4 +240,6 @@ class RosoutSink(TopicSink):
             if is_report:
                 line = f"threshold_information:{line}"
                 self._sent += 1
-            yield self._kind(stamp=stamp, level=level, name=name, msg=line), int(is_report)
+            own = "" if waiting.one is None else waiting.one.node
+            logger = own.strip("/").replace("/", ".") or name
+            yield self._kind(stamp=stamp, level=level, name=logger, msg=line), int(is_report)

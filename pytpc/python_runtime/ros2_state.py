@@ -1,8 +1,8 @@
 """The nodes of rclpy that the program makes; this module never imports rclpy.
 
 The import hook calls `watch` with the module ``rclpy.node`` once the program has imported it. The
-first node names the process; its clock gives the time, and that of the next one when it is
-destroyed.
+first node names the process (`ros2_nodes` tells the others apart); its clock gives the time, and
+that of the next one when it is destroyed.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from time import time_ns
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
     from types import ModuleType
 
 MODULE = "rclpy.node"
@@ -51,6 +51,7 @@ class _State:
     clock: Any = None
     is_simulated = False
     asked_at = 0
+    kind: Any = None
     tell: Callable[[], None] | None = None
 
 
@@ -62,6 +63,7 @@ def tell(function: Callable[[], None]) -> None:
 def watch(module: ModuleType) -> None:
     """Learn of each node, by the constructor that all kinds of nodes call."""
     kind: Any = module.Node
+    _State.kind = kind
     construct = kind.__init__
     if hasattr(construct, "tpc_watches"):
         return
@@ -118,6 +120,32 @@ def has_node() -> bool:
 def name() -> str:
     """The fully qualified name of the first node."""
     return _State.nodes[0].name
+
+
+def has_several() -> bool:
+    """Whether more than one node was made."""
+    return len(_State.nodes) > 1
+
+
+def kind() -> Any:  # noqa: ANN401
+    """The class of all nodes."""
+    return _State.kind
+
+
+def name_of(node: object) -> str:
+    """The fully qualified name of a node of the program; empty if it is none."""
+    return next((one.name for one in _State.nodes if one.node() is node), "")
+
+
+def name_of_owner(values: Iterable[object]) -> str:
+    """The name of the node that has one of these timers, subscriptions and so on."""
+    given = {id(each) for each in values}
+    for known in list(_State.nodes):
+        node = known.node()
+        for owned in [] if node is None else list(vars(node).values()):
+            if type(owned) is list and any(id(each) in given for each in owned):
+                return known.name
+    return ""
 
 
 def domain() -> int | None:

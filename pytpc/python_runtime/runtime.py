@@ -25,6 +25,7 @@ from pytpc.python_runtime.policies import Caps, Edges
 from pytpc.python_runtime.ros1_control import Control
 from pytpc.python_runtime.ros1_sinks import AutoSink, RosoutSink, TopicSink
 from pytpc.python_runtime.ros2_helper import Helper
+from pytpc.python_runtime.ros2_nodes import Split
 from pytpc.python_runtime.sinks import FileSink, Sink
 from pytpc.python_runtime.sites import Reported
 from pytpc.python_runtime.waiting import WaitingSink
@@ -57,6 +58,7 @@ class Runtime:
         self._was_node = False
         self._has_helper = False
         self._is_served = False
+        self._is_split = False
         self._ros2: Helper | None = None
         self._sink = Sink()
         self._caps = Caps(Config(), self._sink)
@@ -74,15 +76,18 @@ class Runtime:
 
     def register(self, place: ListedPlace) -> Reported:
         """The report of a place; there is one for each key and side."""
-        key = place.listed.key
+        return self.instance(place.listed.key, place.swapped)
+
+    def instance(self, key: str, swapped: bool) -> Reported:
+        """The report of one of several nodes that report under a key."""
         with self._lock:
             known = self._reported.get(key)
             if known is None:
-                known = Reported(key, len(self._reported) + 1, place.swapped)
+                known = Reported(key, len(self._reported) + 1, swapped)
                 self._reported[key] = known
-        if known.swapped == place.swapped:
+        if known.swapped == swapped:
             return known
-        return Reported(key, known.number, place.swapped)
+        return Reported(key, known.number, swapped)
 
     def all_reported(self) -> list[Reported]:
         """Every key that may report."""
@@ -188,7 +193,8 @@ class Runtime:
             return Sink()
         if is_ros2:
             kind2 = _OF_ROS2[config.sink]
-            return self._sink if type(self._sink) is kind2 else kind2(self._link)
+            is_it = type(self._sink) is kind2
+            return self._sink if is_it else kind2(self._link, self.all_reported)
         kind = _OF_ROS1[config.sink]
         return self._sink if type(self._sink) is kind else kind()
 
@@ -266,6 +272,9 @@ class Runtime:
     def _node_came(self) -> None:
         """The program has made a node of rclpy."""
         with self._lock:
+            if ros2_state.has_several() and not self._is_split:
+                self._is_split = True
+                sites.put_over(Split(self.instance).over)
             if not self._is_started:
                 return
             if self.file is not None:

@@ -41,13 +41,15 @@ FALSE = repeat(False)
 class Reported:
     """One key that reports, with what the sinks keep for it."""
 
-    __slots__ = ("file", "key", "last", "meter", "number", "swapped")
+    __slots__ = ("file", "key", "last", "meter", "node", "number", "swapped")
 
     def __init__(self, key: str, number: int, swapped: bool) -> None:
         """``swapped``: the threshold is the left operand. Numbers begin with 1."""
         self.key = key
         self.number = number
         self.swapped = swapped
+        # Whose it is, if not the node's that the process is named after.
+        self.node = ""
         self.file: object = None
         self.last = -1
         self.meter = [0, 0]
@@ -89,13 +91,24 @@ def nothing(_reported: Reported, _result: bool, _cmp: float, _thresh: float, _re
 
 
 _take: Take = nothing
+_whole: Take = nothing
+_over: list[Callable[[Take], Take]] = []
 _counts = {"unknown_outcomes": 0}
 
 
 def set_take(take: Take) -> None:
     """Set the function that takes all reports from now on."""
-    global _take  # noqa: PLW0603
+    global _take, _whole  # noqa: PLW0603
+    _whole = take
+    for over in _over:
+        take = over(take)
     _take = take
+
+
+def put_over(over: Callable[[Take], Take]) -> None:
+    """Let ``over`` make the function that takes reports, from each one that is set."""
+    _over.append(over)
+    set_take(_whole)
 
 
 def take(one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:

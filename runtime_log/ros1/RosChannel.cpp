@@ -176,21 +176,22 @@ bool RosChannel::sendWaiting(Outbox &From, bool AtOnce) {
   // between.
   Rung = false;
   if (!To || To->isDropped() || !To->hasSubscribers()) {
-    From.setSubscribed(false);
+    From.setSubscribers(0);
     return false;
   }
-  From.setSubscribed(true);
+  From.setSubscribers(To->getNumSubscribers());
   if (!AtOnce && To->getNumSubscribers() < Expected &&
       Clock::steady() < GatherUntil)
     return false;
-  const bool HasSent = From.send(AtOnce, [&](int64_t Stamp, std::string Text) {
+  const auto Send = [&](int64_t Stamp, std::string Text, const char *) {
     // Not TopicManager::publish, which looks up the topic again and crashes
     // if the topic was removed in that moment.
     ros::SerializedMessage Bytes = F == Form::Strings
                                        ? stringOf(std::move(Text))
                                        : logOf(Stamp, std::move(Text));
     To->publish(Bytes);
-  });
+  };
+  const bool HasSent = From.send(AtOnce, Send);
   if (HasSent)
     ros::PollManager::instance()->getPollSet().signal();
   return HasSent;

@@ -6,6 +6,7 @@
 #include <rcl_yaml_param_parser/parser.h>
 
 #include <cctype>
+#include <dlfcn.h>
 #include <fstream>
 #include <iterator>
 #include <string_view>
@@ -23,6 +24,16 @@ static std::vector<std::string> commandLine() {
   return Words;
 }
 
+/// Whether this process holds components: its own node then has the name that
+/// rclcpp_components gives it.
+static bool isContainer() {
+  void *Library =
+      dlopen("libcomponent_manager.so", RTLD_LAZY | RTLD_NOLOAD | RTLD_LOCAL);
+  if (Library)
+    dlclose(Library);
+  return Library;
+}
+
 std::string nameByCommandLine() {
   std::string Name, Namespace;
   const std::vector<std::string> Words = commandLine();
@@ -32,6 +43,8 @@ std::string nameByCommandLine() {
     if (Word.rfind("__ns:=", 0) == 0)
       Namespace = Word.substr(6);
   }
+  if (Name.empty() && isContainer())
+    Name = "ComponentManager";
   if (Name.empty()) {
     const std::string Program = Words.empty() ? "" : Words[0];
     Name =

@@ -10,7 +10,7 @@
 namespace tpc {
 
 /// The name of the first node after the command line's `__node` and `__ns`, or
-/// else after the program and this process.
+/// else as a container of components, or after the program and this process.
 std::string nameByCommandLine();
 
 /// Calls \p Visit(parameter, value) for each value that the command line, or a

@@ -66,7 +66,7 @@ private:
   bool ring();
   bool hasGathered(size_t Matched);
   bool sendWaiting(Outbox &From, bool AtOnce);
-  void send(int64_t Stamp, const std::string &Text);
+  void send(int64_t Stamp, const std::string &Text, const char *Node);
 
   const bool IsLog;
   rcl_publisher_t Publisher = rcl_get_zero_initialized_publisher();
@@ -147,7 +147,7 @@ bool RclChannel::sendWaiting(Outbox &From, bool AtOnce) {
   if (!IsMade ||
       !isOk(rcl_publisher_get_subscription_count(&Publisher, &Matched)))
     Matched = 0;
-  From.setSubscribed(Matched);
+  From.setSubscribers(Matched);
   if (!Matched) {
     HasGathered = false;
     MatchedAt = 0;
@@ -157,12 +157,14 @@ bool RclChannel::sendWaiting(Outbox &From, bool AtOnce) {
     HasGathered = AtOnce || hasGathered(Matched);
   IsSeen = true;
   return HasGathered &&
-         From.send(AtOnce, [this](int64_t Stamp, const std::string &Text) {
-           send(Stamp, Text);
+         From.send(AtOnce, [this](int64_t Stamp, const std::string &Text,
+                                  const char *Node) {
+           send(Stamp, Text, Node ? Node : RclGraph::of().name());
          });
 }
 
-void RclChannel::send(int64_t Stamp, const std::string &Text) {
+void RclChannel::send(int64_t Stamp, const std::string &Text,
+                      const char *Node) {
   if (!IsLog) {
     std_msgs__msg__String Message;
     if (std_msgs__msg__String__init(&Message) &&
@@ -173,7 +175,7 @@ void RclChannel::send(int64_t Stamp, const std::string &Text) {
     return;
   }
   // The logger of /robot1/guard is robot1.guard.
-  std::string Logger = RclGraph::of().name() + 1;
+  std::string Logger = Node + 1;
   std::replace(Logger.begin(), Logger.end(), '/', '.');
   rcl_interfaces__msg__Log Message;
   if (rcl_interfaces__msg__Log__init(&Message) &&

@@ -118,8 +118,11 @@ int64_t Ros2::now() {
   return Clock::real();
 }
 
-/// The names of parameters are relative to the node, and have dots.
-std::string Ros2::resolveName(const void *, const std::string &Name) {
+/// The names of parameters are relative to the node, and have dots. A handle
+/// that is not known may be that of any node of this process.
+std::string Ros2::resolveName(const void *Handle, const std::string &Name) {
+  if (Handle && State.Nodes != 1)
+    return "";
   const std::string Node = Graph.name();
   return Node.empty() || Name.empty() ? "" : Node + "/" + Name;
 }

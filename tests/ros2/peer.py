@@ -1,4 +1,4 @@
-"""A node of rclpy that hears reports and asks for parameters, for test_rcl_backend.py.
+"""A node of rclpy that hears reports and asks for parameters, for the tests of C++ nodes.
 
 Runs under the interpreter that has rclpy. Reads one command in JSON from each line, and prints its
 answer as JSON.
@@ -106,6 +106,21 @@ class Peer:
         name = node + "/set_parameters_atomically"
         result = self.call(SetParametersAtomically, name, request).result
         return [result.successful, result.reason]
+
+    def load(self, container, kind, name, space, **values):
+        """Load a component of package cell; its number in the container, and what is wrong."""
+        from composition_interfaces.srv import LoadNode  # noqa: PLC0415  # the wheels have none
+
+        request = LoadNode.Request(package_name="cell", plugin_name=kind, node_name=name)
+        request.node_namespace, request.parameters = space, parameters(values)
+        answer = self.call(LoadNode, container + "/_container/load_node", request)
+        return [answer.unique_id, answer.error_message]
+
+    def unload(self, container, number):
+        from composition_interfaces.srv import UnloadNode  # noqa: PLC0415
+
+        request = UnloadNode.Request(unique_id=number)
+        return self.call(UnloadNode, container + "/_container/unload_node", request).success
 
 
 def value_of(value):

@@ -6,6 +6,10 @@
 //   simulated NS        the node's clock follows /clock, and it is NS
 //   read NAME           a parameter is read
 //   node NAME           one more node
+//   read_on NAME        a parameter of that node is read
+//   made NODE AT SIZE   the object at this address is a node
+//   read_in NODE NAME AT SIZE   an object there reads a parameter of the node
+//   of AT N             N reports of the object there
 //   fork N              N reports in a child, which leaves by _exit
 //   shutdown            ends the node
 //   exit | quick        returns from main | _exit
@@ -62,6 +66,7 @@ int main(int Count, char **Words) {
   check(rcl_init(Count, Words, &Options, &Context));
   rcl_node_options_t Of = rcl_node_get_default_options();
   rcl_node_t Node = rcl_get_zero_initialized_node();
+  rcl_node_t Second = rcl_get_zero_initialized_node();
   check(rcl_node_init(&Node, Words[1], Words[2], &Context, &Of));
   rcl_clock_t Clock;
   check(rcl_clock_init(RCL_ROS_TIME, &Clock, &Allocator));
@@ -80,10 +85,31 @@ int main(int Count, char **Words) {
       std::string Name;
       std::cin >> Name;
       log_read(ReadKey, nullptr, &Name, false);
+    } else if (Command == "read_on") {
+      std::string Name;
+      std::cin >> Name;
+      log_read(ReadKey, &Second, &Name, false);
+    } else if (Command == "made") {
+      std::string Name;
+      uintptr_t At, Size;
+      std::cin >> Name >> At >> Size;
+      log_node(Name.c_str(), reinterpret_cast<void *>(At), Size);
+    } else if (Command == "read_in") {
+      std::string Of, Name;
+      uintptr_t At, Size;
+      std::cin >> Of >> Name >> At >> Size;
+      log_read_in(ReadKey, Of.c_str(), &Name, false,
+                  reinterpret_cast<void *>(At), Size);
+    } else if (Command == "of") {
+      uintptr_t At;
+      long Reports;
+      std::cin >> At >> Reports;
+      for (long I = 0; I < Reports; ++I)
+        log_one_of(Key, I % 2, static_cast<double>(I), 0.5, I % 2,
+                   reinterpret_cast<void *>(At));
     } else if (Command == "node") {
       std::string Name;
       std::cin >> Name;
-      static rcl_node_t Second = rcl_get_zero_initialized_node();
       check(rcl_node_init(&Second, Name.c_str(), "/", &Context, &Of));
     } else if (Command == "fork") {
       long Reports;

@@ -115,6 +115,80 @@ print(others())
     assert read([file]).events.nodes == ("/robot2/arm/scout",)
 
 
+CELL = """
+rclpy.init()
+class Guard(Node):
+    def __init__(self, name):
+        super().__init__(name, namespace="/cell")
+    def hear(self, value):
+        return high(value)
+class Filter:
+    def __init__(self, node):
+        self._node = node
+    def hear(self, value):
+        return (lambda: high(value))()
+guards = [Guard("front"), Guard("rear"), Filter(Node("filtered", namespace="/cell"))]
+for step in range(30):
+    for at, guard in enumerate(guards):
+        guard.hear(float(step + 100 * at))
+    if step % 10 == 9:
+        time.sleep(0.3)
+high(1000.0)
+rclpy.shutdown()
+"""
+STEPS = [float(step) for step in range(30)]
+OF_CELL = {
+    "/cell/front": [*STEPS, 1000.0],
+    "/cell/rear": [100 + step for step in STEPS],
+    "/cell/filtered": [200 + step for step in STEPS],
+}
+
+
+# Two nodes of one class, and a helper of a third one. What is of no node is the process's.
+@pytest.mark.parametrize("policy", ["every", "edges"])
+def test_each_node_of_a_program_has_its_reports(domain, tmp_path, policy):
+    program = Program(tmp_path, domain, CELL)
+    done = program.run(TPC_SINK="file", TPC_POLICY=policy)
+    assert (done.returncode, done.stderr) == (0, "")
+    recording = read(program.reports)
+    nodes = {f"{KEY}": {"/cell/front"}, f"{KEY}#2": {"/cell/rear"}, f"{KEY}#3": {"/cell/filtered"}}
+    assert recording.nodes_of == nodes
+    events = recording.events
+    found = {
+        node: events.cmp[events.node == events.nodes.index(node)].tolist() for node in events.nodes
+    }
+    if policy == "every":
+        assert found == OF_CELL
+    else:
+        # Only the front one changes: once. Each reports its first outcome.
+        assert {node: len(values) for node, values in found.items()} == {
+            "/cell/front": 2, "/cell/rear": 1, "/cell/filtered": 1,
+        }  # fmt: skip
+
+
+def test_a_listener_hears_which_node_of_a_program_it_is(domain, tmp_path, listener):
+    program = Program(tmp_path, domain, CELL)
+    done = program.run(TPC_SINK="topic", TPC_POLICY="every")
+    assert (done.returncode, done.stderr) == (0, "")
+    wait_for(lambda: len(listener.values("/cell/front")) >= 31)
+    lines = [line for batch in listener.batches("/cell/front") for line in batch.lines]
+    told = {line.split(",", 1)[1] for line in lines if "threshold_name" in line}
+    assert told == {
+        f"threshold_name:{KEY}#2,node:/cell/rear", f"threshold_name:{KEY}#3,node:/cell/filtered",
+    }  # fmt: skip
+    done = program.run(TPC_SINK="rosout")
+    assert (done.returncode, done.stderr) == (0, "")
+    for node, values in OF_CELL.items():
+        logger = node[1:].replace("/", ".")
+
+        def heard(logger: str = logger) -> list[float]:
+            texts = [text for text, _, _ in listener.logs(logger) if "_information" in text]
+            return [float(text.split("cmp:")[1].split(",")[0]) for text in texts]
+
+        wait_for(lambda heard=heard, values=values: len(heard()) >= len(values))
+        assert heard() == values
+
+
 # The node is made after the first report, and the process is named after the first of two.
 def test_two_nodes_in_an_executor_and_reports_before_them(domain, tmp_path):
     text = """
@@ -145,7 +219,11 @@ print(sum(counts), *[thread.name for thread in threading.enumerate() if "Pool" n
     count, threads = done.stdout.split()
     events = read(program.reports).events
     assert events.cmp.tolist() == [1.0] + [7.0] * int(count)
-    assert events.nodes == ("/first",)
+    # Before the second node all reports are the process's; rclpy knows whose timer it calls.
+    by_node = {name: int((events.node == at).sum()) for at, name in enumerate(events.nodes)}
+    assert by_node.keys() == {"/first", "/other/second"}
+    assert by_node["/first"] >= 21
+    assert by_node["/other/second"] >= 20
     # The thread beside the nodes is none of the program's.
     assert threads == "MainThread"
 

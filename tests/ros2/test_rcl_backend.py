@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import json
 import re
 import shutil
-import subprocess
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from pytpc.base.paths import prefix
 from pytpc.ingest.reading import read
+from ros2_dialogue import Dialogue, Peer, compared, events
 from ros2_graph import PATIENCE_S, PYTHON, compile_on_rcl, ros2_env, wheels_env
 
 HERE = Path(__file__).parent
@@ -27,72 +25,6 @@ pytestmark = [
         reason="the log library was built without ROS 2",
     ),
 ]
-
-
-class Dialogue:
-    """A program that answers each line with a line."""
-
-    def __init__(self, words: list[str], env: dict[str, str], errors: Path) -> None:
-        self._errors = errors
-        with errors.open("w") as stderr:
-            self.process = subprocess.Popen(
-                words,
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=stderr,
-                text=True,
-                env=env,
-            )
-        self.answer()
-
-    def answer(self) -> str:
-        assert self.process.stdout is not None
-        line = self.process.stdout.readline()
-        assert line, self.errors()
-        return line
-
-    def say(self, line: str) -> str:
-        self.tell(line)
-        return self.answer()
-
-    def tell(self, line: str) -> None:
-        assert self.process.stdin is not None
-        self.process.stdin.write(line + "\n")
-        self.process.stdin.flush()
-
-    def finish(self, line: str = "exit") -> int:
-        self.tell(line)
-        return self.process.wait(timeout=PATIENCE_S)
-
-    def errors(self) -> str:
-        return self._errors.read_text()
-
-
-class Peer(Dialogue):
-    """tests/ros2/peer.py, whose methods are called by their names."""
-
-    def ask(self, name: str, *words: Any, **keywords: Any) -> Any:
-        return json.loads(self.say(json.dumps([name, words, keywords])))
-
-    def values(self, reports: int) -> list[float]:
-        """The compared values of the batches, when there are so many."""
-        batches = self.ask("heard", reports)["batches"]
-        return [compared(line) for batch in batches for line in events(batch)]
-
-
-def events(batch: str) -> list[str]:
-    """The reports of a batch, without summaries, names and accounts."""
-    return [
-        line
-        for line in batch.split("\n")[1:]
-        if ",threshold_" not in line and "@" != line[0] != "~"
-    ]
-
-
-def compared(line: str) -> float:
-    found = re.search(r",cmp:([^,]*),", line)
-    assert found, line
-    return float(found[1])
 
 
 @pytest.fixture(scope="module")
@@ -266,6 +198,69 @@ def test_the_first_node_names_the_process(peer: Peer, start: Start) -> None:
     node.say("report 1 0")
     (batch,) = peer.ask("heard", 1)["batches"]
     assert batch.split("\n")[0].endswith(",node:/robot1/keeper")
+    assert node.finish() == 0
+
+
+SECOND = "/second"
+
+
+def nodes_of(folder: Path) -> dict[str, set[str]]:
+    """The nodes of each key, without the key's first 36 characters."""
+    return {key[36:]: set(nodes) for key, nodes in read(folder).nodes_of.items()}
+
+
+# Two nodes of 100 bytes, an object within the second one, and one of a plugin that reads on the
+# second node. Of an object that neither is nor reads anything, only the process is known.
+def test_each_object_is_of_its_node(start: Start, tmp_path: Path) -> None:
+    node = start(sink="file")
+    node.say("node second")
+    # At first nothing is known of the plugin.
+    node.say("of 5000 1")
+    for line in (f"made {GUARD} 1000 100", f"made {SECOND} 2000 100", "of 1000 2", "of 2000 2"):
+        node.say(line)
+    node.say("of 2050 2")
+    node.say(f"read_in {SECOND} by.limit 5000 8")
+    node.say("of 9000 2")
+    node.say("read_on of.node")
+    assert node.finish() == 0
+    assert nodes_of(tmp_path / "reports") == {
+        "": {SECOND}, "#2": {GUARD}, "#3": {SECOND}, "#4": {SECOND}, "#5": {GUARD},
+    }  # fmt: skip
+    names = {one.name for one in read(tmp_path / "reports").names if one.name}
+    assert names == {f"{SECOND}/by.limit", f"{SECOND}/of.node"}
+
+
+# A container unloads a component, and the next one gets its memory: also in the thread's tables.
+@pytest.mark.parametrize("policy", ["every", "edges", "light"])
+def test_another_node_in_the_same_memory_reports_apart(
+    start: Start, tmp_path: Path, policy: str
+) -> None:
+    node = start(sink="file", policy=policy)
+    for name in ("/old", "/old", "/new"):
+        node.say(f"made {name} 1000 100")
+        node.say(f"read_in {name} limit 1000 100")
+        node.say("of 1000 3")
+        node.say("of 1050 3")
+    assert node.finish() == 0
+    assert nodes_of(tmp_path / "reports") == {
+        "": {"/old"}, "#2": {"/old"}, "#3": {"/new"}, "#4": {"/new"},
+    }  # fmt: skip
+
+
+def test_a_listener_hears_the_nodes_with_the_first_reports(peer: Peer, start: Start) -> None:
+    node = start(sink="topic")
+    node.say(f"made {GUARD} 1000 100")
+    node.say(f"made {SECOND} 2000 100")
+    node.say("of 1000 2")
+    node.say("of 2000 3")
+    (batch,) = peer.ask("heard", 5)["batches"]
+    assert batch.count("#2,node:/second") == 1
+    assert ",node:" not in batch.replace("#2,node:/second", "").split("\n", 1)[1]
+    assert peer.ask("set", SETTINGS, sink="rosout") == [[True, ""]]
+    node.say("of 1000 2")
+    node.say("of 2000 3")
+    logs = [log for log in peer.ask("heard", 10)["logs"] if log[3].startswith("threshold_inf")]
+    assert sorted(logger for _, _, logger, _ in logs) == ["robot1.guard"] * 2 + ["second"] * 3
     assert node.finish() == 0
 
 

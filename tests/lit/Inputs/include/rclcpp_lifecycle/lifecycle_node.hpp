@@ -16,6 +16,7 @@ class LifecycleNode {
 public:
   explicit LifecycleNode(const std::string &Name);
   virtual ~LifecycleNode();
+  const char *get_fully_qualified_name() const;
   void deactivate();
   rclcpp::Parameter get_parameter(const std::string &Name) const;
   const rclcpp::ParameterValue &declare_parameter(

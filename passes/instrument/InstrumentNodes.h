@@ -1,0 +1,44 @@
+//===- InstrumentNodes.h - Reports which object is which node -------------===//
+//
+// A process of ROS 2 may have several nodes, such as the components in one
+// container. Behind each call that makes a node, the instrumentation inserts
+//
+//   void log_node(const char *node, const void *object, unsigned long size)
+//
+// with what the node's get_fully_qualified_name() returns, and with the object
+// that is the node: all bytes of the class whose constructor makes it as a base
+// class, if that is known. It does the same for the interface by which the
+// parameters of a node are read.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_INSTRUMENTNODES_H
+#define TPC_INSTRUMENTNODES_H
+
+#include "llvm/ADT/SmallVector.h"
+#include "llvm/IR/DerivedTypes.h"
+#include "llvm/IR/Module.h"
+
+#include <string>
+
+namespace tpc {
+
+class Rules;
+
+/// The mangled name of the method of \p Class, such as `ns::Node`, that returns
+/// its full name; empty if the class is in no namespace.
+std::string nodeNameOf(llvm::StringRef Class);
+
+/// A function that the program need not have: its declaration is weak, unless
+/// the program uses it.
+llvm::FunctionCallee weakFunction(llvm::Module &M, llvm::StringRef Name,
+                                  llvm::FunctionType *T);
+
+/// Inserts the reports of the nodes that \p M makes, of the classes whose
+/// parameters \p Tables describe, and returns what it inserted, in the order of
+/// its uses. The calls do nothing in a program without the log library.
+llvm::SmallVector<llvm::Instruction *, 0> insertNodes(llvm::Module &M,
+                                                      const Rules &Tables);
+
+} // namespace tpc
+
+#endif // TPC_INSTRUMENTNODES_H
