@@ -28,7 +28,7 @@ from pytpc.ros.ros2.found_programs import find_in_package, find_program
 from pytpc.ros.ros2.graph_recording import record_ros2_graph
 from pytpc.ros.ros2.record_mission import Programs, run_ros2_mission
 from pytpc.ros.running import RunningRecording, announced, process_start
-from pytpc.ros.which import asked_ros
+from pytpc.ros.which import asked_ros, sign_of_ros2
 from pytpc.values.launch_kinds import is_ros2_launch
 from pytpc.values.origins import ORIGINS_FILE, read_document
 from pytpc.workspace.colcon import Bases
@@ -90,7 +90,7 @@ def record_launch(
 
 
 def is_of_ros2(workspace: Path, options: RecordOptions) -> bool:
-    """Whether a mission is one of ROS 2: as the user says, its launch file, or its package.
+    """Whether a mission is one of ROS 2: as the user says, its launch file, or the packages.
 
     Raises:
         InputError: TPC_ROS is neither 1 nor 2, or a package.xml is broken.
@@ -102,8 +102,10 @@ def is_of_ros2(workspace: Path, options: RecordOptions) -> bool:
         return is_ros2_launch(launch)
     if launch.name.endswith(_LAUNCH_OF_ROS2):
         return True
-    manifests = (read_manifest(folder) for folder in package_folders(workspace))
-    return any(one.ros == "2" for one in manifests if one.name == options.package)
+    manifests = [read_manifest(folder) for folder in package_folders(workspace)]
+    own = [one.ros for one in manifests if one.name == options.package and one.ros]
+    found = set(own or filter(None, (one.ros for one in manifests)))
+    return found == {"2"} or (len(found) > 1 and bool(sign_of_ros2(os.environ)))
 
 
 def _record_ros2_launch(
