@@ -18,6 +18,7 @@ from pytpc.diagnosis.question import WINDOW_S, Question
 from pytpc.diagnosis.results.differences import RunDifferences
 from pytpc.recording.events import Events
 from pytpc.recording.mission import Recording
+from pytpc.recording.parameter_values import ParameterValues
 from pytpc.ros.graphs import values_at
 from pytpc.ros.mission_run import BAG_FILE, MCAP_FILE
 from pytpc.static.builds import Build, build_of
@@ -69,7 +70,10 @@ class RecordedRun:
         """
         path = None if self.source is None else params_file(self.source)
         if path is None or self.source is None:
-            return RunValues(self.name, self.recording, self.server)
+            server = self.server
+            if server is None and self.recording.values:
+                server = ParameterValues(self.recording.values).last()
+            return RunValues(self.name, self.recording, server)
         values = {
             name: value for name, value in read_parameters(path).items() if not is_of_ros(name)
         }
@@ -104,8 +108,8 @@ def diff(good: Run | Sequence[Run], bad: Run, static_info: StaticInfo | Source) 
     """What differs, where it acts, and which decisions would have come out otherwise.
 
     Args:
-        good: a good run, or several with the last one last; a parameter differs if none of them had
-            its value.
+        good: a good run, or several with the last one last; a parameter differs if it had a value
+            in the mission, at the end or while it ran, that it had in none of them.
         bad: the mission. Marks are not needed.
         static_info: what the analysis found.
 

@@ -21,22 +21,26 @@ from pytpc.ingest.file_counts import FileCounter
 from pytpc.python_runtime.config import NAMES
 from pytpc.ros.caller_env import with_callers
 from pytpc.ros.mission_run import DEFAULT_TOPICS, MissionRun, Progress, RecordOptions
-from pytpc.ros.node_start import STATIC, mission_env
+from pytpc.ros.node_start import STATIC, mission_env, without_python
 from pytpc.ros.ros1.launch_files import find_launch
 from pytpc.ros.ros1.record_mission import record_graph, run_mission
+from pytpc.ros.ros2.found_programs import find_in_package, find_program
 from pytpc.ros.ros2.graph_recording import record_ros2_graph
+from pytpc.ros.ros2.record_mission import Programs, run_ros2_mission
 from pytpc.ros.running import RunningRecording, announced, process_start
-from pytpc.ros.which import asked_ros
+from pytpc.ros.which import asked_ros, sign_of_ros2
+from pytpc.values.launch_kinds import is_ros2_launch
 from pytpc.values.origins import ORIGINS_FILE, read_document
 from pytpc.workspace.colcon import Bases
 from pytpc.workspace.packages import package_folders, read_manifest
 
 _LISTED = 4
+_ONE_LAUNCH = "a launch file is run by itself, with NAME:=VALUE alone; leave out {}"
 _LAUNCH_OF_ROS2 = (".py", ".launch.xml", ".yaml", ".yml")
 __all__ = ["DEFAULT_TOPICS", "MissionRun", "Progress", "RecordOptions"]
 __all__ += ["NodeFiles", "node_files", "record_launch", "record_ros2", "record_running"]
 __all__ += ["sink_settings"]
-__all__ += ["package_of_launch", "why_no_origins"]
+__all__ += ["is_of_ros2", "package_of_launch", "why_no_origins"]
 
 
 def record_launch(
@@ -48,6 +52,8 @@ def record_launch(
     stop: Stop | None = None,
 ) -> MissionRun:
     """Run a launch file of a built workspace on a ROS graph of its own, and record it.
+
+    On ROS 2 it runs in the domain of the caller's shell, and may be executables instead.
 
     The settings of sinks in the caller's environment (TPC_SINK, TPC_POLICY, ...) hold for all
     nodes. Packages of other workspaces that the caller has sourced are found, too.
@@ -61,9 +67,13 @@ def record_launch(
 
     Raises:
         WorkspaceError: the workspace is not built.
-        RunError: see `pytpc.ros.ros1.record_mission.run_mission`.
+        RunError: see `pytpc.ros.ros1.record_mission.run_mission`, and that of ROS 2.
     """
-    _refuse_ros2(options.launch)
+    if is_of_ros2(workspace, options):
+        asked = Stop() if stop is None else stop
+        return _record_ros2_launch(workspace, options, python=python, stop=asked)
+    if options.programs or options.arguments:
+        raise RunError(_ONE_LAUNCH.format((*options.programs, "--")[0]))
     sourced = with_callers(nodes_env(workspace), os.environ)
     env = {**sourced, **sink_settings(os.environ)}
     static = Bases.of(workspace).static_info
@@ -79,19 +89,49 @@ def record_launch(
         return run_mission(env, told, use_sim_time=use_sim_time, stop=stop)
 
 
-def _refuse_ros2(launch: Path | None) -> None:
-    """Refuse a launch file of ROS 2, which TPC does not start by itself.
+def is_of_ros2(workspace: Path, options: RecordOptions) -> bool:
+    """Whether a mission is one of ROS 2: as the user says, its launch file, or the packages.
 
     Raises:
-        RunError: it is one, or the user asks for ROS 2.
+        InputError: TPC_ROS is neither 1 nor 2, or a package.xml is broken.
     """
-    is_one = launch is not None and launch.name.endswith(_LAUNCH_OF_ROS2)
-    if is_one or asked_ros(os.environ) == 2:
-        named = "LAUNCH" if launch is None else shlex.quote(str(launch))
-        raise RunError(
-            "TPC starts launch files of ROS 1 alone. In one terminal: pytpc record --ros 2; in"
-            f' another: eval "$(pytpc env --setup WORKSPACE)"; ros2 launch {named}'
-        )
+    asked, launch = asked_ros(os.environ), options.launch
+    if asked is not None or launch is None:
+        return asked == 2
+    if launch.is_file() and not options.package:
+        return is_ros2_launch(launch)
+    if launch.name.endswith(_LAUNCH_OF_ROS2):
+        return True
+    manifests = [read_manifest(folder) for folder in package_folders(workspace)]
+    own = [one.ros for one in manifests if one.name == options.package and one.ros]
+    found = set(own or filter(None, (one.ros for one in manifests)))
+    return found == {"2"} or (len(found) > 1 and bool(sign_of_ros2(os.environ)))
+
+
+def _record_ros2_launch(
+    workspace: Path, options: RecordOptions, *, python: bool, stop: Stop
+) -> MissionRun:
+    """``record_launch`` on the graph of ROS 2 that the shell names."""
+    sourced = {**nodes_env(workspace, os.environ), **sink_settings(os.environ)}
+    static = Bases.of(workspace).static_info
+    env = mission_env(sourced, static) if python else without_python(sourced)
+    launch, programs = options.launch, None
+    if options.package and launch is not None:
+        found, is_launch = find_in_package(env, options.package, launch.name)
+        launch = found if is_launch else None
+        if not is_launch:
+            more = [find_program(env, options.package, word) for word in options.programs]
+            programs = Programs([found, *more], options.arguments)
+    elif launch is not None and not launch.is_file():
+        raise RunError(f"no such launch file{_hint(workspace, launch)}", launch)
+    if programs is None and (options.programs or options.arguments):
+        raise RunError(_ONE_LAUNCH.format((*options.programs, "--")[0]))
+    if programs is not None and options.args:
+        name = next(iter(options.args))
+        raise RunError(f"{name}:=... is for a launch file; give a parameter with -- --ros-args -p")
+    options = replace(options, launch=launch, package="", static=static)
+    with _announced(options, workspace, static) as told:
+        return run_ros2_mission(env, told, programs, stop=stop)
 
 
 def record_running(
@@ -129,7 +169,8 @@ def record_ros2(
         OSError: the file cannot be opened.
     """
     with _announced(options, None, options.static) as told:
-        return record_ros2_graph(told, stop, env)
+        known = os.environ if env is None else env
+        return record_ros2_graph(told, stop, env, _launch_env(options, known))
 
 
 def _launch_env(options: RecordOptions, env: Mapping[str, str]) -> Mapping[str, str]:

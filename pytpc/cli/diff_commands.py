@@ -37,8 +37,8 @@ def diff_command(given: _DiffArguments) -> None:
 
     For each: its values, where it was set, the comparisons in which it acts, and how many recorded
     decisions would have come out otherwise with the good value. Parameters that are read and
-    compared nowhere are listed, too. Marks are not needed. With several GOOD recordings, a
-    parameter differs if none of them had its value.
+    compared nowhere are listed, too. Marks are not needed. A parameter differs if it had a value in
+    BAD, at the end or while it ran, that it had in none of the GOOD recordings.
     """
     recording = recording_of(given.bad)
     static = static_for(given.static_source, given.bad, recording)

@@ -32,7 +32,7 @@ from pytpc.base.signals import Stop
 from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import PATH, as_object
 from pytpc.cli.console import progress, tell_next, waiting, warn
-from pytpc.cli.launch_words import LaunchWords, folder_for
+from pytpc.cli.launch_words import LaunchWords, MissionCommand, folder_for, node_args
 from pytpc.cli.lines import progress_console, say
 from pytpc.cli.mission_options import MISSION_OPTIONS, MissionArguments
 from pytpc.cli.running_graph import ROS, ros2_here, tell
@@ -41,7 +41,7 @@ from pytpc.recording.mission import REPORTS_FOLDER, RUN_FILE, read_run
 from pytpc.ros.folder_lock import alone_in
 from pytpc.ros.mission_run import BAG_FILE, refuse_earlier
 from pytpc.ros.ros1.master import Master, uri_of
-from pytpc.ros.ros2.address import words_of
+from pytpc.ros.ros2.address import is_ros2, words_of
 
 _SILENT_S = 5.0
 _CLOCK_S = 30.0
@@ -61,7 +61,7 @@ class _RecordArguments(MissionArguments):
     parquet: bool
 
 
-@click.command("record")
+@click.command("record", cls=MissionCommand)
 @click.argument("words", nargs=-1, metavar="[WORKSPACE [PACKAGE] LAUNCH] [NAME:=VALUE]...")
 @MISSION_OPTIONS
 @ROS
@@ -87,13 +87,15 @@ def record_command(given: _RecordArguments) -> None:
     Without WORKSPACE and LAUNCH, the graph at ROS_MASTER_URI, or that of ROS 2 in ROS_DOMAIN_ID, is
     recorded until Ctrl-C. With them,
     the launch file runs on a ROS graph of its own: give its path, or PACKAGE and its name, as to
-    roslaunch. Its Python nodes report, and TPC_SINK, TPC_POLICY and so on apply to all nodes.
+    roslaunch. Its Python nodes report, and TPC_SINK, TPC_POLICY and so on apply to all nodes. On
+    ROS 2 it runs in the domain of the shell, and PACKAGE EXECUTABLE... [-- ARGUMENT...] starts
+    nodes without a launch file.
 
     `mark`, `watch` and `sink` in another terminal find the recording by themselves. Ctrl-C ends it
     at any time, and it is complete; a second Ctrl-C waits no longer for nodes to end. Marks of all
     observers are recorded as they appear.
     """
-    words = LaunchWords.of(given.words)
+    words = LaunchWords.of(given.words, node_args())
     if words.workspace is not None and given.launched is not None:
         raise click.UsageError("--launch is only for a running graph; here LAUNCH names the file")
     if words.workspace is not None and given.static_source is not None:
@@ -228,8 +230,8 @@ def record_mission(
         nonlocal has_begun
         has_begun = True
         with suppress(OSError):
-            tell(f"recording {master} in {output}; press Ctrl-C to stop")
-            tell(where_nodes_print(output))
+            tell(f"recording {words_of(master)} in {output}; press Ctrl-C to stop")
+            tell(where_nodes_print(output, master))
 
     with (
         mission_progress(words.launch.stem, "s") as advance,
@@ -245,9 +247,11 @@ def record_mission(
         )
 
 
-def where_nodes_print(output: Path) -> str:
+def where_nodes_print(output: Path, master: str) -> str:
     """Where the output of a mission's nodes is, in a line."""
     ros = output / "ros"
+    if is_ros2(master):
+        return f"what the nodes print is in {ros / 'out'} and in {ros / 'log'}"
     return f"what the nodes print is in {ros / 'out/roslaunch.log'} and in {ros / 'log'}"
 
 

@@ -51,6 +51,8 @@ class MissionArguments:
             until=self.until,
             topics=self.topics,
             package=words.package,
+            programs=words.programs,
+            arguments=words.node_args,
             on_kept=_tell_kept,
             on_doubt=_tell_doubt,
             on_quiet=_tell_quiet,

@@ -14,7 +14,7 @@ import click
 from pytpc.base.errors import InputError, WorkspaceError
 from pytpc.base.paths import OWN_FOLDER
 from pytpc.cli.arguments import PATH, REFERENCE, as_object
-from pytpc.cli.launch_words import LaunchWords
+from pytpc.cli.launch_words import LaunchWords, MissionCommand, node_args
 from pytpc.cli.mission_options import MISSION_OPTIONS, MissionArguments
 from pytpc.ros.node_start import command_of
 from pytpc.workspace.ros2 import MARKERS
@@ -31,12 +31,14 @@ class _RunArguments(MissionArguments):
     arguments: tuple[str, ...]
 
 
-class _Run(click.Command):
+class _Run(MissionCommand):
     """Options may follow a workspace, but what follows a node is the node's own."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         ctx.allow_interspersed_args = _is_mission(args)
-        return super().parse_args(ctx, args)
+        if ctx.allow_interspersed_args:
+            return super().parse_args(ctx, args)
+        return click.Command.parse_args(self, ctx, args)
 
 
 def _is_mission(words: Sequence[str]) -> bool:
@@ -80,7 +82,7 @@ def _is_mission(words: Sequence[str]) -> bool:
     "arguments",
     nargs=-1,
     type=click.UNPROCESSED,
-    metavar="[[PACKAGE] LAUNCH [NAME:=VALUE]...]|[ARGUMENT]...",
+    metavar="[[PACKAGE] LAUNCH [NAME:=VALUE]...]|[PACKAGE EXECUTABLE...]|[ARGUMENT]...",
 )
 @as_object(_RunArguments)
 def run_command(given: _RunArguments) -> None:
@@ -88,12 +90,13 @@ def run_command(given: _RunArguments) -> None:
 
     \b
     pytpc run WORKSPACE LAUNCH               a file, or PACKAGE and FILE as to roslaunch
+    pytpc run WORKSPACE PACKAGE EXECUTABLE... [-- ARGUMENT...]     ROS 2, without launch
     pytpc run NODE [ARGUMENT]...             a Python script, by its own interpreter
 
     A mission is recorded as `record` does, with the suspects of `watch` on the screen, which takes
     the keys of `mark`. When it ends, or at `q` or Ctrl-C, the verdict of `rank` is printed and the
     page of `report` is written to the folder. Without a terminal, nothing is shown and no keys are
-    taken.
+    taken. On ROS 2, the mission runs in the domain of the shell (ROS_DOMAIN_ID).
 
     A NODE replaces this process. Anything that is not a Python script runs unchanged, so
     launch-prefix="pytpc run" can be used in a whole launch file.
@@ -141,7 +144,7 @@ def _run_mission(given: _RunArguments) -> None:
             f" {shlex.quote(str(workspace))}",
             workspace,
         )
-    words = LaunchWords.of([str(workspace), *given.arguments])
+    words = LaunchWords.of([str(workspace), *given.arguments], node_args())
     # What a node does without, as it takes a second to import.
     from pytpc.cli.run_mission import run_mission  # noqa: PLC0415
 

@@ -53,6 +53,7 @@ from pytpc.present.ranking_tables import print_diagnosis
 from pytpc.present.watch_screen import WatchOptions
 from pytpc.recording.mission import Recording
 from pytpc.ros.mission_run import DiedNode, MissionRun
+from pytpc.ros.ros2.address import is_ros2, words_of
 
 _TURN_S = 0.2
 _NOTES = 3
@@ -176,9 +177,12 @@ def _with_keys(
                 while not flown.wait_for_graph(_TURN_S):
                     pass
             if flown.master and not stop.is_set():
-                tell(where_nodes_print(output))
-                os.environ.update(ROS_MASTER_URI=flown.master, ROS_IP=flown.host)
-                os.environ.pop("ROS_HOSTNAME", None)
+                if is_ros2(flown.master):
+                    tell(f"the mission runs in {words_of(flown.master)}")
+                else:
+                    os.environ.update(ROS_MASTER_URI=flown.master, ROS_IP=flown.host)
+                    os.environ.pop("ROS_HOSTNAME", None)
+                tell(where_nodes_print(output, flown.master))
                 mission, feed = opened_graph(flown.master, observer.name, fresh)
                 judged = None
                 if good:

@@ -35,6 +35,7 @@ from pytpc.diagnosis.suggestion.what_if import count_turned, spans_before
 from pytpc.diagnosis.thresholds.replay import Track, tracks_of
 from pytpc.recording.mission import Recording
 from pytpc.recording.parameter_change import Change
+from pytpc.recording.parameter_values import ParameterValues
 from pytpc.static.builds import Build, program_name
 from pytpc.static.coverage import STATES, Covered, coverage
 from pytpc.static.link_unit import Comparison
@@ -56,7 +57,7 @@ class RunValues:
     """A run and the values of its parameters.
 
     ``values`` are those of the parameter server by full name, None if they were not recorded;
-    ``places`` says where they were set, by full name. ``build`` is what its nodes were built from;
+    those that changed while it ran are in the recording. ``places`` says where they were set, by full name. ``build`` is what its nodes were built from;
     None if that is not known.
     """
 
@@ -69,6 +70,21 @@ class RunValues:
     def set_value(self, name: str) -> SetValue:
         """The value of a parameter by its full name."""
         return SetValue((self.values or {}).get(name), self.places.get(name, ""))
+
+    @cached_property
+    def _over_time(self) -> ParameterValues:
+        return ParameterValues(self.recording.values)
+
+    def had(self, name: str) -> list[SetValue]:
+        """The values that a parameter had in the run, the last one last; None is left out."""
+        first, *later = self._over_time.history(name) or [(0, None)]
+        if not later:
+            return [self.set_value(name)] if name in (self.values or {}) else []
+        found = [SetValue(first[1], self.places.get(name, ""))]
+        for time_ns, value in later:
+            second = (time_ns - self.recording.start_ns) / 1e9
+            found.append(SetValue(value, f"set while it ran, at {second:.1f} s"))
+        return [one for one in found if one.value is not None]
 
     def evaluated_in(self, name: str, comparison: Comparison) -> frozenset[str]:
         """The nodes that evaluated a comparison with the parameter of this name."""
@@ -199,11 +215,14 @@ def _on_the_server(bad: RunValues, good: Sequence[RunValues], known: _Known) -> 
     found = []
     for name in names:
         there = [run for run in recorded if name in (run.values or {})]
-        if name in values and any(_same(run.set_value(name).value, values[name]) for run in there):
+        before = [one.value for run in there for one in run.had(name)]
+        new = [one for one in bad.had(name) if not any(_same(one.value, old) for old in before)]
+        if name in values and before and not new:
             continue
         if name not in values and len(there) < len(recorded):
             continue
-        now, then = _told(bad, name, known), [_told(run, name, known) for run in good]
+        now = new[-1] if new else _told(bad, name, known)
+        then = [_told(run, name, known) for run in good]
         if any(one.value is not None and _same(one.value, now.value) for one in then):
             continue
         last = next((one for one in reversed(then) if one.value is not None), then[-1])

@@ -54,6 +54,10 @@ class ParameterValues:
             return None
         return values[max(0, bisect_right(self._times[name], time_ns) - 1)]
 
+    def history(self, name: str) -> list[tuple[int, object]]:
+        """The values of a parameter, each with the time (ns) from which on it had it."""
+        return list(zip(self._times.get(name, ()), self._values.get(name, ()), strict=True))
+
     def changes(self) -> Iterator[ValueChange]:
         """Each change, in order of time."""
         found = [

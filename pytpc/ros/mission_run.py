@@ -135,6 +135,9 @@ class RecordOptions:
         until: a topic of type std_msgs/Bool; when it says true the mission is done.
         topics: recorded besides ``DEFAULT_TOPICS`` and ``until``.
         package: the package in which roslaunch looks for ``launch``; empty where that is a path.
+        programs: more executables of ROS 2 that are run beside ``launch``, which then names one;
+            PACKAGE/EXECUTABLE is one of another package.
+        arguments: what each executable is given.
         on_progress: called several times a second.
         on_kept: called with the new names of an earlier recording's files of marks, if any.
         static: the file or build with the static information of the nodes; the folder gets a copy,
@@ -156,6 +159,8 @@ class RecordOptions:
     until: str | None = None
     topics: Sequence[str] = ()
     package: str = ""
+    programs: Sequence[str] = ()
+    arguments: Sequence[str] = ()
     on_progress: Callable[[Progress], None] | None = None
     on_kept: Callable[[Sequence[Path]], None] | None = None
     static: Path | None = None

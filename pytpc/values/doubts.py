@@ -15,14 +15,16 @@ from pytpc.values.trace import Trace
 def doubts(trace: Trace) -> Iterator[str]:
     """Sentences for the user, each with what to type.
 
-    Nodes that roslaunch will not find, and launch files and configuration that were changed in the
-    sources but are read as they were installed.
+    Nodes that roslaunch will not find, what launch of ROS 2 could not work out, and launch files
+    and configuration that were changed in the sources but are read as they were installed.
     """
     for package, program in trace.absent:
         yield (
             f"package {package} has no program {program}, so this node will not start: build the"
             " workspace with `pytpc build`, or make the script executable with `chmod +x`"
         )
+    for what in trace.unknown:
+        yield f"what the launch file sets is not known as a whole: {what}"
     for name in trace.files:
         path = Path(name)
         source = source_of(path) if is_installed(path) else None

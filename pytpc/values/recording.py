@@ -29,6 +29,7 @@ BY_A_NODE = (
     "set by a program, not by the launch file; a node with dynamic_reconfigure writes all of its"
     " values when it starts"
 )
+NOT_SEEN = "the command line of its node is not known; is the node on another machine?"
 MISSION_PATIENCE_S = 20.0
 _OF_ROS2 = "ros__parameters"
 _ENV_NAMES = ("ROS_PACKAGE_PATH", "CMAKE_PREFIX_PATH", "ROS_DISTRO", "ROS_ROOT")
@@ -109,8 +110,24 @@ def origins_of(
     found = {}
     for name in sorted({*at_end, *launched}):
         if not is_of_ros(name):
-            found[name] = _origin(name, launched.get(name), at_end, at_start, trace is not None)
+            origin = _origin(name, launched.get(name), at_end, at_start, trace is not None)
+            found[name] = _declared(origin, trace, at_start)
     return found
+
+
+def _declared(origin: Origin, trace: Trace | None, at_start: Mapping[str, object] | None) -> Origin:
+    """The origin; of a node of ROS 2, which declares its parameters, it may be the default."""
+    if trace is None or origin.note not in ("", BY_A_NODE) or origin.path is not None:
+        return origin
+    if origin.kind not in ("runtime", "unknown") or trace.placed is None:
+        return origin
+    before = (at_start or {}).get(origin.name, origin.value)
+    if not same_value(before, origin.value):
+        note = f"it was {before!r} when the recording began"
+        return replace(origin, kind="runtime", note=note)
+    if origin.name.rpartition("/")[0] in trace.declaring:
+        return replace(origin, kind="default", note="")
+    return replace(origin, kind="unknown", note=NOT_SEEN)
 
 
 def leaves(name: str, value: object) -> list[tuple[str, object]]:
@@ -144,11 +161,14 @@ def _origin(
 
 
 def try_trace(
-    env: Mapping[str, str], launch: Path, args: Mapping[str, str]
+    env: Mapping[str, str], launch: Path, args: Mapping[str, str], ros2_python: str = ""
 ) -> tuple[Trace | None, str]:
     """``trace_any_launch``, or why it is not possible: no mission fails or waits long for that."""
     try:
-        return trace_any_launch(env, launch, args, patience_s=MISSION_PATIENCE_S), ""
+        trace = trace_any_launch(
+            env, launch, args, patience_s=MISSION_PATIENCE_S, ros2_python=ros2_python
+        )
+        return trace, ""
     except TpcError as error:
         return None, str(error)
     except Exception as error:
@@ -187,7 +207,7 @@ def save_origins(
         # The mission was flown.
         reason = f"where the values came from cannot be worked out: {error!r}"
     document: dict[str, object] = {
-        "launch": None if trace is None else str(trace.launch),
+        "launch": None if trace is None or trace.launch is None else str(trace.launch),
         "args": {} if trace is None else dict(sorted(trace.args.items())),
         "env": {name: env[name] for name in _ENV_NAMES if name in env},
         "reason": reason,

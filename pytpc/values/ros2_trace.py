@@ -44,10 +44,11 @@ def trace_any_launch(
     args: Mapping[str, str],
     *,
     patience_s: float = _PATIENCE_S,
+    ros2_python: str = "",
 ) -> Trace:
     """``trace_launch``, or ``trace_ros2_launch`` for a launch file of ROS 2."""
-    if is_ros2_launch(launch):
-        return trace_ros2_launch(env, launch, args, patience_s=patience_s)
+    if is_ros2_launch(launch) or ros2_python:
+        return trace_ros2_launch(env, launch, args, patience_s=patience_s, python=ros2_python)
     return trace_launch(env, launch, args, patience_s=patience_s)
 
 
@@ -57,6 +58,7 @@ def trace_ros2_launch(
     args: Mapping[str, str],
     *,
     patience_s: float = _PATIENCE_S,
+    python: str = "",
 ) -> Trace:
     """Read a launch file as `ros2 launch` would, and start nothing.
 
@@ -65,6 +67,7 @@ def trace_ros2_launch(
         launch: the launch file: Python (which is run), XML or YAML.
         args: its arguments, as on the command line of `ros2 launch`.
         patience_s: how long it may take.
+        python: the interpreter that has launch; empty: that of `ros2`, or of the PATH.
 
     Raises:
         InputError: launch would not take the file, or rcl a params file.
@@ -73,7 +76,7 @@ def trace_ros2_launch(
     """
     if not launch.is_file():
         raise InputError("no such launch file", launch)
-    python = interpreter_of("ros2", env.get("PATH"))
+    python = python or interpreter_of("ros2", env.get("PATH"))
     try:
         answer = run_tracer([python, str(_TRACER)], env, launch, args, patience_s=patience_s)
     except TracerError as error:
@@ -86,7 +89,15 @@ def trace_ros2_launch(
     placed = NodeOrigins().of_nodes(answer["nodes"])
     settings = {name: [{"value": origin.value}] for name, origin in placed.items()}
     nodes = [_launch_node(node) for node in answer["nodes"]]
-    return Trace(launch.absolute(), dict(args), settings, nodes, answer["files"], placed=placed)
+    return Trace(
+        launch.absolute(),
+        dict(args),
+        settings,
+        nodes,
+        answer["files"],
+        placed=placed,
+        unknown=tuple(map(str, answer["unknown"])),
+    )
 
 
 def _launch_node(node: Fields) -> LaunchNode:

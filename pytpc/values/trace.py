@@ -61,16 +61,21 @@ class Trace:
     ``settings`` has for each parameter, by full name, what set it in this order: the last holds.
     Each is the object that ``launch_tracer`` describes. ``files`` has the SHA-256 of every launch
     and YAML file that was read. ``absent`` has package and program of the nodes that roslaunch
-    would not find. ``placed`` has the origins themselves where launch of ROS 2 has read the file.
+    would not find. ``placed`` has the origins themselves where launch of ROS 2 has read the file;
+    ``unknown`` says what could not be followed there. ``launch`` is None where the nodes of ROS 2
+    were started without a launch file. ``declaring`` has the nodes of ROS 2 whose command lines
+    are known: a value that these do not set is the default in the code.
     """
 
-    launch: Path
+    launch: Path | None
     args: Mapping[str, str]
     settings: Mapping[str, Sequence[Mapping[str, Any]]]
     nodes: Sequence[LaunchNode]
     files: Mapping[str, str]
     absent: Sequence[tuple[str, str]] = ()
     placed: Mapping[str, Origin] | None = None
+    unknown: Sequence[str] = ()
+    declaring: frozenset[str] = frozenset()
 
     @property
     def by_roslaunch(self) -> set[str]:

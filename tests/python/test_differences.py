@@ -14,7 +14,7 @@ from mission_samples import BagFile, SummaryBuilder, comparison, events, key, li
 from rich.console import Console
 
 import pytpc
-from pytpc.api.comparing import diff, diff_running
+from pytpc.api.comparing import RecordedRun, diff, diff_running
 from pytpc.base.errors import InputError
 from pytpc.cli.main import main
 from pytpc.cli.mark_commands import _differing
@@ -27,6 +27,7 @@ from pytpc.present.ranking_tables import print_differences
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
 from pytpc.recording.parameter_change import Change
+from pytpc.recording.parameter_values import SetValue as TimedValue
 from pytpc.recording.summaries import Summary
 from pytpc.ros.earlier_runs import last_unmarked_run
 from pytpc.static.link_unit import ParameterRead
@@ -574,3 +575,33 @@ def test_what_has_no_names_is_no_dump(runs, text):
     assert result.stderr == (
         f"pytpc: error: {good}/params.yaml: not a dump of the parameter server: it has no names\n"
     )
+
+
+# The value was 12 from second 6 to 14, and 5 again at the end, as in the good run.
+def test_a_value_that_was_set_while_it_ran_differs_though_the_last_one_does_not():
+    now = values(faces=5, coverage=0.6, radius=0.17, extra=1)
+    over_time = [(0, 5), (6, 12), (14, 5)]
+    timed = [TimedValue(ns(second), "/uav/faces", value) for second, value in over_time]
+    recording = replace(flight(5), values=tuple(timed))
+    (one,) = found_in(RunValues("bad", recording, now)).found
+    assert (one.parameter, one.good.value, one.bad.value) == ("/uav/faces", 5, 12)
+    assert one.bad.place == "set while it ran, at 6.0 s"
+    # A good run that had it at some time clears it.
+    cleared = replace(GOOD, recording=replace(GOOD.recording, values=tuple(timed)))
+    assert found_in(RunValues("bad", recording, now), cleared).found == ()
+    assert found_in(GOOD, cleared).found == ()
+
+
+# 5, and then 12 until the end: the change is what differs, with its time.
+def test_the_value_at_the_end_is_told_with_the_time_from_which_on_it_held():
+    timed = (TimedValue(0, "/uav/faces", 5), TimedValue(ns(3), "/uav/faces", 12))
+    bad = RunValues("bad", replace(flight(12), values=timed), {**GOOD.values, "/uav/faces": 12})
+    (one,) = found_in(bad).found
+    assert (one.good.value, one.bad.value) == (5, 12)
+    assert one.bad.place == "set while it ran, at 3.0 s"
+
+
+def test_a_recording_without_params_yaml_has_the_values_over_time(tmp_path):
+    timed = (TimedValue(0, "/uav/faces", 5), TimedValue(ns(3), "/uav/faces", 12))
+    run = RecordedRun(replace(flight(12), values=timed), tmp_path)
+    assert run.values.values == {"/uav/faces": 12}

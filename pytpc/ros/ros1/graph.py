@@ -10,7 +10,6 @@ import contextlib
 import os
 import re
 import secrets
-import signal
 import socket
 import subprocess
 import time
@@ -22,12 +21,12 @@ from typing import TYPE_CHECKING
 
 from pytpc.base.errors import MissingToolError, RunError
 from pytpc.base.signals import Stop, end_group, signals_end
+from pytpc.ros.left_processes import GRAPH_WORD, end_processes
 from pytpc.ros.ros1.master import Master
 
 if TYPE_CHECKING:
     from typing_extensions import Self
 
-GRAPH_WORD = "TPC_GRAPH"
 _CALLER = "/tpc_graph"
 _START_TRIES = 3
 _MASTER_PATIENCE_S = 15.0
@@ -297,32 +296,6 @@ class RosGraph:
 def without_colours(text: str) -> str:
     """The output of roslaunch without colours and the terminal's title."""
     return _COLOUR.sub("", text)
-
-
-def end_processes(word: str) -> None:
-    """End what is left of the graph with this word, except this process: SIGTERM, then SIGKILL."""
-    for number, patience in ((signal.SIGTERM, 2.0), (signal.SIGKILL, 2.0)):
-        left = _processes_with_word(word)
-        for pid in left:
-            with contextlib.suppress(ProcessLookupError, PermissionError):
-                os.kill(pid, number)
-        until = time.monotonic() + patience
-        while left and time.monotonic() < until:
-            time.sleep(0.05)
-            left = _processes_with_word(word)
-
-
-def _processes_with_word(word: str) -> list[int]:
-    """Processes, zombies left out, that have this graph's word in their environment."""
-    wanted = f"{GRAPH_WORD}={word}".encode()
-    found = []
-    for entry in Path("/proc").iterdir():
-        if not entry.name.isdigit() or int(entry.name) == os.getpid():
-            continue
-        with contextlib.suppress(OSError):
-            if wanted in (entry / "environ").read_bytes().split(b"\0"):
-                found.append(int(entry.name))
-    return found
 
 
 def _free_port() -> int:

@@ -23,9 +23,9 @@ from pytpc.base.errors import RunError
 from pytpc.base.signals import stop_on_signals
 from pytpc.recording.marks import MarkMessages
 from pytpc.ros.intake import CLOCK, Recorder
+from pytpc.ros.left_processes import GRAPH_WORD, end_processes
 from pytpc.ros.mission_run import RecorderStatus, save_status
 from pytpc.ros.ros1.bag_file import BagFile
-from pytpc.ros.ros1.graph import GRAPH_WORD, end_processes
 from pytpc.ros.ros1.master import Master
 from pytpc.ros.ros1.subscriber import RawSubscriber
 

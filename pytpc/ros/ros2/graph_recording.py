@@ -7,17 +7,19 @@ import os
 import queue
 import threading
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import yaml
 
 from pytpc.base.atomic import write_atomic
-from pytpc.base.errors import RunError
+from pytpc.base.errors import MissingToolError, RunError
 from pytpc.base.signals import Stop
 from pytpc.base.wording import many
 from pytpc.ingest.decoders import ROS2
+from pytpc.ingest.file_counts import NO_FILES, FileCounts
 from pytpc.ingest.messages import REPORTS, ROSOUT
 from pytpc.ingest.parameter_events import TOPIC, TYPE, decode_parameter_event
 from pytpc.recording.marks import MarkMessages
@@ -37,10 +39,14 @@ from pytpc.ros.mission_run import (
 )
 from pytpc.ros.ros2.address import Ros2Address
 from pytpc.ros.ros2.agent_process import Agent
+from pytpc.ros.ros2.command_lines import CommandLines
 from pytpc.ros.ros2.found_nodes import nobody, visible
+from pytpc.ros.ros2.interpreter import launch_interpreter
 from pytpc.ros.ros2.mcap_file import McapFile
 from pytpc.ros.source import Source
 from pytpc.values.origins import PARAMS_FILE, START_FILE
+from pytpc.values.recording import MISSION_PATIENCE_S, save_origins, try_trace
+from pytpc.values.trace import Trace
 
 KNOWN = {
     ROSOUT: "rcl_interfaces/msg/Log",
@@ -56,20 +62,35 @@ _HISTORY_S = 3.0
 _LOOK_NS = 2 * 10**9
 _VALUE_S = 2.0
 _QUIET_S = 10.0
+NO_COMMAND_LINES = "no process of this machine has the nodes, and no launch file was given"
 _SIM_TIME = "use_sim_time"
 
 
+class Looked(NamedTuple):
+    """What a mission is besides its graph: whether it is over, and what its files have."""
+
+    is_over: bool = False
+    files: FileCounts = NO_FILES
+
+
+_NOTHING = Looked()
+
+
 def record_ros2_graph(
-    options: RecordOptions, stop: threading.Event | Stop, env: Mapping[str, str] | None = None
+    options: RecordOptions,
+    stop: threading.Event | Stop,
+    env: Mapping[str, str] | None = None,
+    launch_env: Mapping[str, str] | None = None,
 ) -> MissionRun:
     """Record /rosout, /threshold_information, all marks, parameters, and the topics asked for.
 
-    The folder gets mission.mcap, run.json, params_start.yaml and params.yaml.
+    The folder gets mission.mcap, run.json, params_start.yaml, params.yaml and origins.json.
 
     Args:
         options: the folder, and when the recording ends beside ``stop``.
         stop: ends the recording; if it is set again, no node is waited for.
         env: says which graph it is; None: that of this process.
+        launch_env: in which the launch file is read; None: ``env``.
 
     Raises:
         MissingToolError: no interpreter has rclpy.
@@ -84,27 +105,59 @@ def record_ros2_graph(
         keep_static(options)
         began = time.monotonic()
         agent = Agent(Ros2Address.of_env(known), known)
-        try:
-            recording = _GraphRecording(agent, options)
-        except BaseException:
-            agent.close()
-            raise
+        recording = GraphRecording.of(agent, options)
+        launched = LaunchReading(known if launch_env is None else launch_env, options)
         try:
             kept = keep_earlier_marks(options.out_dir)
             if kept and options.on_kept is not None:
                 options.on_kept(kept)
             if options.on_graph is not None:
                 options.on_graph(str(agent.address), "")
+            launched.start()
             ended = recording.run(stop, began)
         finally:
             # What was recorded until then is a whole file, unless that cannot be written.
-            status, fault = recording.finish(isinstance(stop, Stop) and stop.in_a_hurry)
+            status, fault = recording.finish(_hurries(stop))
         run = MissionRun.of(status, options.out_dir, ended, time.monotonic() - began)
         run = replace(run, bag=options.out_dir / MCAP_FILE)
         save_run(run, options)
+        recording.save_origins(*launched.ended(lambda: _hurries(stop)), launched.env, is_own=False)
         if fault:
             raise RunError(f"the recording ended: {fault}; what came until then is in it", run.bag)
         return run
+
+
+def _hurries(stop: threading.Event | Stop) -> bool:
+    return isinstance(stop, Stop) and stop.in_a_hurry
+
+
+class LaunchReading(threading.Thread):
+    """Reads the launch file, if one is given, while the mission is recorded."""
+
+    def __init__(self, env: Mapping[str, str], options: RecordOptions) -> None:
+        super().__init__(name="launch file", daemon=True)
+        self.env = env
+        self._launch, self._args = options.launch, options.args
+        self._found: tuple[Trace | None, str] | None = None
+
+    def run(self) -> None:
+        """Read it."""
+        if self._launch is not None:
+            try:
+                python = launch_interpreter(self.env)
+            except MissingToolError as error:
+                self._found = None, str(error)
+                return
+            self._found = try_trace(self.env, self._launch, self._args, python)
+
+    def ended(self, hurry: Callable[[], bool]) -> tuple[Trace | None, str]:
+        """Wait for the launch file to be read; its values, or why they are not known."""
+        limit = time.monotonic() + 2 * MISSION_PATIENCE_S
+        while self.is_alive() and time.monotonic() < limit and not hurry():
+            self.join(_POLL_S)
+        if self._launch is None:
+            return None, ""
+        return self._found or (None, f"{self._launch} was not read in time")
 
 
 class _Values(threading.Thread):
@@ -113,8 +166,9 @@ class _Values(threading.Thread):
     A thread of its own: a node that hangs is given up after seconds.
     """
 
-    def __init__(self, agent: Agent) -> None:
+    def __init__(self, agent: Agent, command_lines: CommandLines) -> None:
         super().__init__(name="values", daemon=True)
+        self._command_lines = command_lines
         self.found: queue.SimpleQueue[bytes] = queue.SimpleQueue()
         self._agent = agent
         self._nodes: queue.SimpleQueue[str | None] = queue.SimpleQueue()
@@ -130,6 +184,8 @@ class _Values(threading.Thread):
     def run(self) -> None:
         """Ask until ``close``."""
         while (name := self._nodes.get()) is not None:
+            # Its process may not live long.
+            self._command_lines.look()
             # A node may have no services of parameters.
             with contextlib.suppress(RunError):
                 self.found.put(self._agent.values(name, _VALUE_S))
@@ -140,8 +196,17 @@ class _Values(threading.Thread):
         self.join(patience_s)
 
 
-class _GraphRecording:
-    """A recording of a graph."""
+class GraphRecording:
+    """A recording of a graph, which others may extend by what they look at."""
+
+    @classmethod
+    def of(cls, agent: Agent, options: RecordOptions) -> GraphRecording:
+        """Begin; where that fails, the agent leaves the graph."""
+        try:
+            return cls(agent, options)
+        except BaseException:
+            agent.close()
+            raise
 
     def __init__(self, agent: Agent, options: RecordOptions) -> None:
         """Subscribe to all that is known; the rest is found as it appears."""
@@ -154,7 +219,8 @@ class _GraphRecording:
         self._recorder = Recorder(self._file, list(recorded), until, False, ROS2)
         self._recorder.hold()
         self._topics = dict.fromkeys([*recorded, CLOCK])
-        self._values = _Values(agent)
+        self.command_lines = CommandLines(agent.address.domain)
+        self._values = _Values(agent, self.command_lines)
         self._set: list[SetValue] = []
         self._missed = 0
         self._on_quiet = options.on_quiet
@@ -167,23 +233,38 @@ class _GraphRecording:
             agent.subscribe(topic, KNOWN.get(topic, ""), history=topic == ROSOUT)
         self._values.start()
 
-    def run(self, stop: threading.Event | Stop, began: float) -> str:
-        """Record until the end; the word of ``MissionRun.ended``."""
+    def run(
+        self,
+        stop: threading.Event | Stop,
+        began: float,
+        look: Callable[[], Looked] = lambda: _NOTHING,
+    ) -> str:
+        """Record until the end; the word of ``MissionRun.ended``.
+
+        Args:
+            stop: ends it.
+            began: when the mission did, on the monotonic clock.
+            look: asked several times a second whether the mission is over, and for its files.
+        """
         told = 0.0
         on_progress, timeout_s = self._options.on_progress, self._options.timeout_s
         while True:
-            self._step(_POLL_S)
+            self.step(_POLL_S)
             status = self._status()
             wall_s = time.monotonic() - began
+            seen = look()
             if on_progress is not None and time.monotonic() - told > _TOLD_S:
                 told = time.monotonic()
-                on_progress(Progress.of(status, wall_s))
-            if wall_s > _QUIET_S and not status.is_reporting:
+                on_progress(Progress.of(status, wall_s, seen.files))
+            in_files = seen.files.reports + seen.files.summaries
+            if wall_s > _QUIET_S and not status.is_reporting and not in_files:
                 self._tell_quiet()
             if stop.is_set() or self._agent.fault:
                 return "interrupted"
             if status.done:
                 return "done"
+            if seen.is_over:
+                return "ended"
             if timeout_s is not None and wall_s > timeout_s:
                 return "timeout"
 
@@ -223,7 +304,7 @@ class _GraphRecording:
                 if not fault:
                     with contextlib.suppress(RunError):
                         self._agent.drain()
-                self._step(0.0)
+                self.step(0.0)
             finally:
                 self._agent.close()
             self._take_values()
@@ -233,7 +314,7 @@ class _GraphRecording:
         self._save_values()
         return self._status(closed=True), fault
 
-    def _step(self, timeout_s: float) -> None:
+    def step(self, timeout_s: float) -> None:
         """Take the messages that have come."""
         self._look()
         for source, stamp_ns, data in self._agent.poll(timeout_s):
@@ -300,6 +381,27 @@ class _GraphRecording:
         if values.names():
             write_params(folder / START_FILE, values.first())
             write_params(folder / PARAMS_FILE, values.last())
+
+    def save_origins(
+        self, launched: Trace | None, reason: str, env: Mapping[str, str], *, is_own: bool
+    ) -> None:
+        """Write origins.json, where values are known.
+
+        Args:
+            launched: what the launch file sets; None where it is not known, or there is none.
+            reason: why it is not known; empty without a launch file.
+            env: in which the launch file was read.
+            is_own: whether TPC has started the nodes.
+
+        Raises:
+            TpcError: the file cannot be written.
+        """
+        first = ParameterValues(self._set).first()
+        trace = self.command_lines.trace(first, launched, is_own=is_own)
+        why = [reason or NO_COMMAND_LINES] if trace is None else [*filter(None, [reason])]
+        why += self.command_lines.faults
+        folder = self._options.out_dir
+        save_origins(folder, folder / PARAMS_FILE, trace, "; ".join(why), env)
 
 
 def write_params(path: Path, values: Mapping[str, object]) -> None:

@@ -6,12 +6,13 @@ import os
 import re
 import shutil
 import subprocess
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import project_root
+from pytpc.values.trace import interpreter_of
 
 VARIABLE = "TPC_ROS2_PYTHON"
 HOW_TO = (
@@ -19,6 +20,8 @@ HOW_TO = (
     f" export {VARIABLE}=/path/to/python3"
 )
 _OPT = Path("/opt/ros")
+_RCLPY = ("rclpy",)
+_LAUNCH = ("launch", "launch_ros")
 _PATIENCE_S = 20.0
 _NOT_FOR_IT = re.compile(r"TPC_|PYTHONHOME$|PYTHONSTARTUP$|COVERAGE|COV_")
 
@@ -54,19 +57,39 @@ def interpreters(env: Mapping[str, str]) -> Iterator[Interpreter]:
     for place in places:
         if place and place not in seen and os.access(place, os.X_OK):
             seen.add(place)
-            if _may_have_rclpy(place, clean):
+            if _has_packages(place, clean, _RCLPY):
                 yield Interpreter(place, clean)
     for setup in sorted(_OPT.glob("*/setup.sh"), reverse=True):
         if next(setup.parent.glob("lib/python3*/site-packages/rclpy"), None) is not None:
             yield Interpreter("/usr/bin/python3", _sourced(setup, clean))
 
 
-def _may_have_rclpy(python: str, env: Mapping[str, str]) -> bool:
-    """Whether an interpreter finds the package; it is not imported, which takes a while."""
-    code = "import importlib.util as u, sys; sys.exit(u.find_spec('rclpy') is None)"
+def launch_interpreter(env: Mapping[str, str]) -> str:
+    """The interpreter that has launch of ROS 2 in this environment.
+
+    Raises:
+        MissingToolError: none has it.
+    """
+    clean = _without_tpc(env)
+    found = [one.path for one in interpreters(env)]
+    for python in dict.fromkeys([interpreter_of("ros2", env.get("PATH")), *found]):
+        if _has_packages(python, clean, _LAUNCH):
+            return python
+    raise MissingToolError(
+        "launch of ROS 2 is not found; source ROS 2 (`. /opt/ros/DISTRO/setup.sh`), or start"
+        " executables without it: pytpc run WORKSPACE PACKAGE EXECUTABLE... [-- --ros-args ...]"
+    )
+
+
+def _has_packages(python: str, env: Mapping[str, str], names: Sequence[str]) -> bool:
+    """Whether an interpreter finds packages; they are not imported, which takes a while."""
+    code = (
+        "import importlib.util as u, sys;"
+        " sys.exit(any(u.find_spec(one) is None for one in sys.argv[1:]))"
+    )
     try:
         ran = subprocess.run(
-            [python, "-c", code],
+            [python, "-c", code, *names],
             env=dict(env),
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
