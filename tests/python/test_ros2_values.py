@@ -128,9 +128,13 @@ def test_values_that_are_set_again_are_no_changes() -> None:
 
 
 def test_a_parameters_file_has_the_names_that_it_was_written_from(tmp_path: Path) -> None:
-    values: dict[str, object] = {SPEED: 6.5, "/plain/a": [1, 2], "/plain/on": True}
-    write_params(tmp_path / "params.yaml", values)
-    assert read_parameters(tmp_path / "params.yaml") == values
+    nodes = {"/plain": {"a": [1, 2], "on": True, "qos_overrides./clock.depth": 7}}
+    write_params(tmp_path / "params.yaml", nodes)
+    assert read_parameters(tmp_path / "params.yaml") == {
+        "/plain/a": [1, 2],
+        "/plain/on": True,
+        "/plain/qos_overrides./clock.depth": 7,
+    }
 
 
 def test_a_logger_is_of_a_node() -> None:

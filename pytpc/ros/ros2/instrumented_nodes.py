@@ -10,12 +10,11 @@ from pytpc.ingest.parameter_events import decode_parameter_event
 from pytpc.python_runtime.config import PARAMETERS
 from pytpc.ros.node_status import NodeStatus, Value, values_of
 from pytpc.ros.ros2.address import Ros2Address
-from pytpc.ros.ros2.agent_process import Agent, Graph
+from pytpc.ros.ros2.agent_process import AT_A_TIME, Agent, Graph
 from pytpc.ros.ros2.parameter_types import type_number
 
 _HIDDEN = "/_tpc"
 _STATUS = "status"
-_AT_A_TIME = 16
 
 
 class Ros2Nodes:
@@ -71,7 +70,7 @@ class Ros2Nodes:
 
     def reload_all(self, nodes: Sequence[str]) -> Iterator[NodeStatus]:
         """The settings that are in effect, of many nodes at a time, in their order."""
-        with ThreadPoolExecutor(_AT_A_TIME) as pool:
+        with ThreadPoolExecutor(AT_A_TIME) as pool:
             yield from pool.map(self._reload, nodes)
 
     def _reload(self, node: str) -> NodeStatus:
