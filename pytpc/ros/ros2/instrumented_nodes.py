@@ -11,6 +11,7 @@ from pytpc.python_runtime.config import PARAMETERS
 from pytpc.ros.node_status import NodeStatus, Value, values_of
 from pytpc.ros.ros2.address import Ros2Address
 from pytpc.ros.ros2.agent_process import AT_A_TIME, Agent, Graph
+from pytpc.ros.ros2.found_nodes import nobody, visible
 from pytpc.ros.ros2.parameter_types import type_number
 
 _HIDDEN = "/_tpc"
@@ -30,8 +31,14 @@ class Ros2Nodes:
         self._refused: dict[str, str] = {}
 
     def names(self) -> list[str]:
-        """The names of the nodes, sorted."""
+        """The names of the nodes, sorted.
+
+        Raises:
+            RunError: there is no node at all.
+        """
         graph = self._agent.wait_for_graph(lambda graph: bool(_settable(graph)))
+        if not visible(graph.nodes):
+            raise RunError(self._agent.fault or nobody(self._agent.address))
         return sorted(name[: -len(_HIDDEN)] for name in _settable(graph))
 
     def set(self, node: str | None, settings: Mapping[str, Value]) -> None:
