@@ -45,6 +45,8 @@ _BY_MAGIC = {
 MOST_ROWS = 1 << 22
 """A binary file with more reports is condensed, if the recording is read into memory."""
 _FIRST = 4096
+# What a recorder of ROS 2 writes, until it ends.
+_GROWING = ".mcap.active"
 _MOST_BELOW, _LISTED = 500, 6
 # The rosout node and roscpp begin a new file after 100 MB.
 _ROTATED = re.compile(r"\.log\.[0-9]+")
@@ -180,9 +182,6 @@ def sources(path: Path) -> list[Path]:
     if not found and any(path.glob("*.bag.active")):
         what = "only an unfinished bag: run rosbag reindex on it, then remove .active from its name"
         raise InputError(what, path)
-    if not found and any(path.glob("*.mcap.active")):
-        what = "only an unfinished MCAP file: run mcap recover on it, and give what that writes"
-        raise InputError(what, path)
     if not found:
         raise InputError(f"no recordings in this folder; {_to_give(path, entries)}", path)
     return found
@@ -268,6 +267,8 @@ def _is_recording(path: Path) -> bool:
     ):
         # It is read with the recording beside it.
         return False
+    if path.name.endswith(_GROWING):
+        return True
     return bool(_ROTATED.search(path.name)) or path.suffix in {
         ".bag",
         ".mcap",

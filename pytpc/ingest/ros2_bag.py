@@ -11,7 +11,7 @@ import tempfile
 from collections.abc import Iterator
 from contextvars import ContextVar
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, cast
 
 from rosbags.interfaces import Connection
 from rosbags.rosbag2 import Reader, storage_mcap
@@ -24,6 +24,7 @@ from pytpc.base.regular_files import read_file
 from pytpc.ingest.decoders import ROS2
 from pytpc.ingest.gathering import Gathering, Progress
 from pytpc.ingest.magic import MCAP_MAGIC
+from pytpc.ingest.mcap_end import cut_off
 from pytpc.ingest.messages import REPORTS, ROSOUT, Messages, wanted
 from pytpc.ingest.parameter_events import TOPIC, TYPE, decode_parameter_event
 from pytpc.ingest.unpacking import LARGEST_MESSAGE, UnpackedStream, Unpacker
@@ -80,12 +81,13 @@ def read_ros2_into(path: Path, gathering: Gathering, on_progress: Progress | Non
     docs/reference/formats.md#marks, and the values of parameters from /parameter_events.
 
     Raises:
-        InputError: the file is truncated or damaged, or of ROS 1; one line.
+        InputError: the file is damaged, or of ROS 1; one line. An MCAP file that ends too early is
+            read up to there, and a note says so.
     """
     with contextlib.ExitStack() as exits:
         _unpacker.set(Unpacker())
         try:
-            reader = _open(path, exits)
+            reader = _open(path, exits, gathering)
             kept, notes = wanted(reader.connections, _TYPES, _TIMES)
             gathering.notes += notes
             whole = reader if isinstance(reader, Reader) else reader.metadata
@@ -116,14 +118,14 @@ def read_ros2_into(path: Path, gathering: Gathering, on_progress: Progress | Non
         taken.close()
 
 
-def _open(path: Path, exits: contextlib.ExitStack) -> _Reader:
+def _open(path: Path, exits: contextlib.ExitStack, gathering: Gathering) -> _Reader:
     """rosbags' reader of the file, by its content."""
     reader: _Reader
     if path.is_dir():
         _check_metadata(path / _METADATA)
         reader = Reader(path)
     elif _is_mcap(path):
-        reader = McapReader(path)
+        reader = McapReader(_whole(path, gathering))
     else:
         if _IN_A_URI & set(str(path)):
             # The path becomes a part of a URI there.
@@ -138,6 +140,26 @@ def _open(path: Path, exits: contextlib.ExitStack) -> _Reader:
         if isinstance(storage, Sqlite3Reader) and storage.dbconn is not None:
             storage.dbconn.limit(_SQLITE_LIMIT_LENGTH, LARGEST_MESSAGE)
     return reader
+
+
+def _whole(path: Path, gathering: Gathering) -> Path:
+    """The file, or what is whole of it where its end is missing.
+
+    Raises:
+        InputError: it ends before its first message can.
+    """
+    cut = cut_off(path)
+    if cut is None:
+        return path
+    if cut.size <= len(MCAP_MAGIC):
+        size = path.stat().st_size
+        raise InputError(f"truncated or damaged: it ends at its beginning ({size:,} bytes)", path)
+    gathering.notes.append(
+        f"{path}: has no end; its recorder was killed, or still runs: all but the last"
+        f" {cut.left:,} bytes are read"
+    )
+    # It has all that the reader uses of a path.
+    return cast("Path", cut)
 
 
 def _storages(reader: _Reader) -> list[object]:
@@ -167,7 +189,11 @@ def _messages(
     """The messages of ``wanted``; any error of the reader becomes an InputError."""
     if not wanted:
         return
-    messages = reader.messages(wanted)
+    if isinstance(reader, McapReader) and not reader.chunks:
+        # Without an index, rosbags gives them as they are in the file, or not at all.
+        messages = reader.messages_scan(wanted)
+    else:
+        messages = iter(reader.messages(wanted))
     while True:
         try:
             message = next(messages)
@@ -184,11 +210,8 @@ def _broken(path: Path, error: Exception) -> InputError:
     said = " ".join(str(error).split()) or type(error).__name__
     if "Profile is not ros2" in said:
         return InputError("not an .mcap file of ROS 2, the only kind that rosbags reads", path)
-    hint = f'; "mcap recover {path.name}" recovers the rest'
-    if path.is_dir():
-        hint = ""
-    elif not _is_mcap(path):
-        hint = f'; "sqlite3 {path.name} .recover" recovers the rest'
+    tool = "mcap recover {0}" if _is_mcap(path) else "sqlite3 {0} .recover"
+    hint = "" if path.is_dir() else f'; "{tool.format(path.name)}" recovers the rest'
     size = "" if path.is_dir() else f" ({path.stat().st_size:,} bytes)"
     return InputError(f"truncated or damaged{size}: {said}{hint}", path)
 

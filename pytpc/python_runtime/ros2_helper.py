@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from pytpc.python_runtime import ros2_state
 from pytpc.python_runtime.errors import warn
-from pytpc.python_runtime.ros2_link import Link
+from pytpc.python_runtime.ros2_link import ContextShutDown, Link
 from pytpc.python_runtime.ros2_settings import Settings
 
 if TYPE_CHECKING:
@@ -102,12 +102,17 @@ class Helper:
             self.link.wake()
 
     def _opened(self) -> bool:
-        """Join the graph; where that fails, reports go to a file."""
+        """Join the graph; False where that fails: then reports go to a file."""
         name = ros2_state.name()
+        link: Link | None = None
         try:
             link = Link(name, ros2_state.domain(), self._settings.value)
             self._settings.declare(link.node)
         except Exception as error:
+            if isinstance(error, ContextShutDown) or (link is not None and not link.is_open()):
+                # Usually the process ends now.
+                self._pause(_AGAIN_S)
+                return True
             if not self._is_stopping:
                 self._runtime.fall_back(f"{error}" or type(error).__name__)
             return False

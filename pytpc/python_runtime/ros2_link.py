@@ -19,6 +19,10 @@ if TYPE_CHECKING:
 NAME = "_tpc"
 
 
+class ContextShutDown(Exception):
+    """A signal has shut a context down before its node was there."""
+
+
 class Link:
     """The context and what is in it. The thread that makes it also spins and closes it."""
 
@@ -26,6 +30,7 @@ class Link:
         """``node``: the full name of the program's node. Without ``ask`` there are no services.
 
         Raises:
+            ContextShutDown: a signal has shut the context down meanwhile.
             Exception: rclpy's own, where the graph cannot be used.
         """
         from rclpy.context import Context  # noqa: PLC0415
@@ -36,15 +41,20 @@ class Link:
         self._executor: Any = None
         self.node: Any = None
         self._context = Context()
+        has_begun = False
         try:
             # The process's logging belongs to the program.
             options: dict[str, Any] = {} if domain is None else {"domain_id": domain}
             self._context.init(args=_arguments(sys.argv), initialize_logging=False, **options)
+            has_begun = True
             self.node = _hidden_node(node, self._context, ask)
             if ask is not None:
                 self._executor = _executor(self._context, self.node)
-        except BaseException:
+        except BaseException as error:
+            is_shut = has_begun and not self.is_open()
             self.close()
+            if is_shut:
+                raise ContextShutDown("a signal has shut it down") from error
             raise
 
     def is_open(self) -> bool:

@@ -299,11 +299,11 @@ def refuse_earlier(out_dir: Path) -> None:
     bags = [out_dir / BAG_FILE, out_dir / MCAP_FILE]
     if any(bag.exists() for bag in bags) or is_converted(out_dir):
         raise RunError("already has a recording; give another folder", out_dir)
-    for bag, tool in zip(bags, ("rosbag reindex", "mcap recover"), strict=True):
+    how = ("recover it with rosbag reindex, or give", "it is read as it is: give")
+    for bag, what in zip(bags, how, strict=True):
         active = bag.with_name(f"{bag.name}.active")
         if active.exists():
-            what = f"is an unfinished recording; recover it with {tool}, or give another folder"
-            raise RunError(what, active)
+            raise RunError(f"is an unfinished recording; {what} another folder", active)
 
 
 def keep_static(options: RecordOptions) -> None:

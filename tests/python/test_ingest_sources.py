@@ -83,13 +83,15 @@ def test_ros2(ros2):
 
 def test_ros2_files_that_are_cut_are_one_line(ros2):
     data = ros2.read_bytes()
-    for size in [40, 200, len(data) // 3, len(data) // 2, len(data) - 9]:
+    # An .mcap file with whole records behind its header is read.
+    cuts = [200, len(data) // 3, len(data) // 2, len(data) - 9]
+    for size in [30, *(cuts if ros2.suffix == ".db3" else [])]:
         ros2.write_bytes(data[:size])
         with pytest.raises(InputError) as caught:
             read(ros2)
         assert "\n" not in str(caught.value)
         assert "truncated or damaged" in str(caught.value)
-        assert "recovers the rest" in str(caught.value)
+        assert ("recovers the rest" in str(caught.value)) == (ros2.suffix == ".db3")
 
 
 # Found by fuzzing.

@@ -128,9 +128,13 @@ def test_values_that_are_set_again_are_no_changes() -> None:
 
 
 def test_a_parameters_file_has_the_names_that_it_was_written_from(tmp_path: Path) -> None:
-    values: dict[str, object] = {SPEED: 6.5, "/plain/a": [1, 2], "/plain/on": True}
-    write_params(tmp_path / "params.yaml", values)
-    assert read_parameters(tmp_path / "params.yaml") == values
+    nodes = {"/plain": {"a": [1, 2], "on": True, "qos_overrides./clock.depth": 7}}
+    write_params(tmp_path / "params.yaml", nodes)
+    assert read_parameters(tmp_path / "params.yaml") == {
+        "/plain/a": [1, 2],
+        "/plain/on": True,
+        "/plain/qos_overrides./clock.depth": 7,
+    }
 
 
 def test_a_logger_is_of_a_node() -> None:
@@ -147,6 +151,10 @@ def test_the_address_of_a_graph_is_that_of_its_variables() -> None:
     back = Ros2Address.parse(text).env({"ROS_DOMAIN_ID": "1", "RMW_IMPLEMENTATION": "x", "A": "b"})
     assert back == {"A": "b", "ROS_DOMAIN_ID": "7", "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
     assert str(Ros2Address.of_env({})) == "ros2://0"
+    assert str(Ros2Address.of_env({"ROS_DOMAIN_ID": "0232"})) == "ros2://232"
+    for wrong in ("-1", "233", "x", "1e1", "\u0663", "9" * 5000, "0000000009999"):
+        with pytest.raises(InputError, match="give a number from 0 to 232"):
+            Ros2Address.of_env({"ROS_DOMAIN_ID": wrong})
 
 
 def test_which_ros_a_shell_is_for() -> None:

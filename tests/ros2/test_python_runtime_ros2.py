@@ -406,6 +406,25 @@ high(6.0)
         assert (events.cmp.tolist(), events.nodes) == ([1.0, 7.0, 6.0], ("/alone",))
 
 
+def test_a_signal_while_the_hidden_node_is_made(domain, tmp_path, listener):
+    text = """
+from pytpc.python_runtime import ros2_link
+make = ros2_link._hidden_node
+def interrupted(node, context, ask):
+    ros2_link._hidden_node = make
+    context.shutdown()
+    return make(node, context, ask)
+ros2_link._hidden_node = interrupted
+rclpy.init()
+node = Node("hasty")
+high(7.0)
+until(lambda: "_tpc" in [name for name, _ in node.get_node_names_and_namespaces()])
+"""
+    done = Program(tmp_path, domain, text).run(TPC_SINK="topic")
+    assert (done.returncode, done.stderr) == (0, "")
+    wait_for(lambda: listener.values("/hasty") == [7.0])
+
+
 def test_a_program_without_a_node(domain, tmp_path):
     text = "high(1.0)\nhigh(7.0)\n"
     program = Program(tmp_path, domain, text)

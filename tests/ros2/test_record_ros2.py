@@ -195,22 +195,6 @@ def test_marks_of_two_observers_are_ranked_by(env: dict[str, str], tmp_path: Pat
     assert "limits.speed" in told(env, tmp_path, "rank", "mission")
 
 
-def test_nobody_is_there_and_other_wrong_settings(env: dict[str, str], tmp_path: Path) -> None:
-    said = told(env, tmp_path, "apply", "--live", "/a/b", "1", status=1)
-    assert f"no node in domain {env['ROS_DOMAIN_ID']}; ROS_DOMAIN_ID=" in said
-    for variables, words in (
-        ({"RMW_IMPLEMENTATION": "rmw_none"}, "RMW_IMPLEMENTATION=rmw_none is not installed"),
-        ({"TPC_ROS2_PYTHON": "/usr/bin/false"}, "no node can be made"),
-        ({"TPC_ROS2_PYTHON": "/no/python"}, "TPC_ROS2_PYTHON names no program"),
-        ({"TPC_ROS": "3"}, "give 1 or 2"),
-    ):
-        said = told({**env, **variables}, tmp_path, "record", "-o", "none", status=1)
-        assert words in said
-        errors = [line for line in said.splitlines() if line.startswith("pytpc: error")]
-        assert len(errors) == 1
-        assert "Traceback" not in said
-
-
 def test_a_killed_agent_loses_nothing_of_what_was_recorded(
     env: dict[str, str], tmp_path: Path
 ) -> None:

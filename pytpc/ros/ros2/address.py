@@ -10,11 +10,15 @@ from collections.abc import Mapping
 from typing import NamedTuple
 from urllib.parse import parse_qsl, urlencode
 
+from pytpc.base.errors import InputError
+
 SCHEME = "ros2://"
 DOMAIN = "ROS_DOMAIN_ID"
+RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
+MOST_DOMAINS = 232
 VARIABLES = (
     "RMW_IMPLEMENTATION",
-    "ROS_AUTOMATIC_DISCOVERY_RANGE",
+    RANGE,
     "ROS_STATIC_PEERS",
     "ROS_LOCALHOST_ONLY",
     "ROS_DISCOVERY_SERVER",
@@ -32,9 +36,19 @@ class Ros2Address(NamedTuple):
 
     @classmethod
     def of_env(cls, env: Mapping[str, str]) -> Ros2Address:
-        """The graph on which a node of this environment would be."""
+        """The graph on which a node of this environment would be.
+
+        Raises:
+            InputError: ROS_DOMAIN_ID is none.
+        """
+        domain = env.get(DOMAIN) or "0"
+        # rcl takes -1 for 0, and DDS has no ports for more than these.
+        number = domain.lstrip("0") or "0"
+        is_number = domain.isascii() and domain.isdigit() and len(number) <= len(str(MOST_DOMAINS))
+        if not is_number or int(number) > MOST_DOMAINS:
+            raise InputError(f"{DOMAIN}={domain}: give a number from 0 to {MOST_DOMAINS}")
         found = tuple((name, env[name]) for name in VARIABLES if env.get(name))
-        return cls(env.get(DOMAIN) or "0", found)
+        return cls(number, found)
 
     @classmethod
     def parse(cls, text: str) -> Ros2Address:

@@ -22,6 +22,8 @@ from pytpc.ros.ros2 import interpreter
 from pytpc.ros.ros2.address import Ros2Address
 from pytpc.ros.source import Source
 
+AT_A_TIME = 16
+"""How many nodes are asked at a time: one that hangs holds up few others."""
 # Without the folder of the caller, whose files may have the names of modules.
 _BOOT = (
     "import sys; sys.path[0] = sys.argv[1]; from agent.node import main; del sys.path[0]; main()"
@@ -31,7 +33,6 @@ _TIME = struct.Struct("<q")
 _START_S = 30.0
 _ANSWER_S = 10.0
 _END_S = 5.0
-_CALL_S = 3.0
 _FOUND_S = 1.5
 _LONG_S = 5.0
 # Where the start took long, so do the answers of others: this many times as long.
@@ -59,6 +60,10 @@ class Graph:
     publishers: Mapping[str, int] = field(default_factory=dict)
 
 
+Take = Callable[[Head, bytes], None]
+"""What takes an answer: its head, which is empty if the agent has ended, and its body."""
+
+
 @dataclass(slots=True)
 class _Answer:
     """An answer that somebody waits for."""
@@ -67,6 +72,11 @@ class _Answer:
     head: Head = field(default_factory=dict)
     body: bytes = b""
 
+    def take(self, head: Head, body: bytes) -> None:
+        """It has come."""
+        self.head, self.body = head, body
+        self.come.set()
+
 
 class Agent:
     """A node on a graph of ROS 2, which another interpreter runs.
@@ -74,6 +84,9 @@ class Agent:
     Args:
         address: of the graph.
         env: the environment of the user.
+
+    Attributes:
+        patience_s: how long to wait for other nodes: longer where this one has started slowly.
 
     Raises:
         MissingToolError: no interpreter has rclpy.
@@ -88,7 +101,7 @@ class Agent:
         self.untaken: dict[str, str] = {}
         self.about: Head = {}
         self._numbers = itertools.count()
-        self._answers: dict[int, _Answer] = {}
+        self._answers: dict[int, Take] = {}
         self._sources: dict[bytes, Source] = {}
         self._messages: deque[tuple[Source, int, bytes]] = deque()
         self._come = threading.Condition()
@@ -96,11 +109,12 @@ class Agent:
         self._seen = threading.Event()
         self._ended = threading.Event()
         self._closing = False
+        self._frames = 0
         self._said: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - closed by `close`
         start = time.monotonic()
         self._process = self._started(os.environ if env is None else env)
         self._began = time.monotonic()
-        self._patience_s = max(_LONG_S, _LONG_STARTS * (self._began - start))
+        self.patience_s = max(_LONG_S, _LONG_STARTS * (self._began - start))
         self._thread = threading.Thread(target=self._read, name="agent", daemon=True)
         self._thread.start()
 
@@ -119,8 +133,12 @@ class Agent:
         for _ in range(len(self._messages)):
             yield self._messages.popleft()
 
-    def subscribe(self, topic: str, kind: str = "", *, history: bool = False) -> None:
-        """Receive a topic, as soon as its type is known; ``history``: what was sent before, too."""
+    def subscribe(self, topic: str, kind: str = "", *, history: bool | None = False) -> None:
+        """Receive a topic, as soon as its type is known.
+
+        ``history``: what was sent before, too; None: if its publishers keep that, and with
+        whatever quality of service they offer.
+        """
         self._send({"op": "subscribe", "topic": topic, "type": kind, "history": history})
 
     def source_of(self, topic: str) -> Source | None:
@@ -142,18 +160,30 @@ class Agent:
         If it is not ``enough`` by then, it waits some seconds longer, more on a busy machine.
         """
         self._ended.wait(max(0.0, self._began + _FOUND_S - time.monotonic()))
-        until = self._began + self._patience_s
+        until = self._began + self.patience_s
         while not enough(self.graph) and time.monotonic() < until and not self._ended.is_set():
             self._ended.wait(0.1)
         return self.graph
 
-    def values(self, node: str, patience_s: float = _CALL_S) -> bytes:
+    def values(self, node: str) -> bytes:
         """All parameters of a node, as a serialized rcl_interfaces/ParameterEvent.
 
         Raises:
             RunError: it does not answer.
         """
-        return self.ask({"op": "values", "node": node, "patience": patience_s})[1]
+        return self._call({"op": "values", "node": node})[1]
+
+    def values_later(self, node: str, take: Take) -> None:
+        """Have ``take`` called with `values`, by another thread, as soon as the node answers.
+
+        If the node goes before it has answered, the head has an ``error``.
+
+        Raises:
+            RunError: the agent has ended.
+        """
+        number = next(self._numbers)
+        self._answers[number] = take
+        self._send({"op": "values", "node": node, "patience": None, "id": number})
 
     def set(
         self, node: str, parameters: Sequence[tuple[str, int, object]]
@@ -166,20 +196,29 @@ class Agent:
         Raises:
             RunError: it does not answer.
         """
-        head, _ = self.ask({"op": "set", "node": node, "parameters": list(parameters)})
+        head, _ = self._call({"op": "set", "node": node, "parameters": list(parameters)})
         return [(bool(taken), str(why)) for taken, why in head["results"]]
 
+    def _call(self, head: Head) -> tuple[Head, bytes]:
+        """``ask`` for what another node has to answer, by up to two calls."""
+        head = {**head, "patience": self.patience_s}
+        return self.ask(head, 2 * self.patience_s + _ANSWER_S)
+
     def ask(self, head: Head, patience_s: float = _ANSWER_S) -> tuple[Head, bytes]:
-        """Ask the agent, and wait for its answer.
+        """Ask the agent, and wait for its answer: so long, and while it is not silent.
 
         Raises:
             RunError: there is none, or it is an error.
         """
         number, answer = next(self._numbers), _Answer()
-        self._answers[number] = answer
+        self._answers[number] = answer.take
         try:
             self._send({**head, "id": number})
-            if not answer.come.wait(patience_s) or not answer.head:
+            frames = -1
+            while not answer.come.is_set() and frames != self._frames:
+                frames = self._frames
+                answer.come.wait(patience_s)
+            if not answer.head:
                 raise RunError(self.fault or "ROS 2 does not answer in time")
         finally:
             self._answers.pop(number, None)
@@ -263,6 +302,7 @@ class Agent:
         try:
             while (found := _frame(self._process)) is not None:
                 head, body = found
+                self._frames += 1
                 source = self._sources.get(head)
                 if source is None:
                     self._hear(dict(json.loads(head)), body)
@@ -277,8 +317,9 @@ class Agent:
             pass
         finally:
             self._ended.set()
-            for answer in list(self._answers.values()):
-                answer.come.set()
+            for number in list(self._answers):
+                if (take := self._answers.pop(number, None)) is not None:
+                    take({}, b"")
             with self._come:
                 self._come.notify_all()
 
@@ -294,9 +335,10 @@ class Agent:
             self.untaken[head["topic"]] = head["why"]
         elif event == "lost":
             self.lost[head["topic"]] += head["count"]
-        elif event == "answer" and (answer := self._answers.get(head.get("id", -1))) is not None:
-            answer.head, answer.body = head, body
-            answer.come.set()
+        elif (
+            event == "answer" and (take := self._answers.pop(head.get("id", -1), None)) is not None
+        ):
+            take(head, body)
 
     def _send(self, head: Head, body: bytes = b"") -> None:
         """Send a frame.

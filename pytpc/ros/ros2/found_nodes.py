@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pytpc.ros.ros2.address import DOMAIN, Ros2Address
+from pytpc.ros.ros2.address import DOMAIN, RANGE, Ros2Address
 from pytpc.ros.ros2.agent_process import Graph
 
 
@@ -18,6 +18,8 @@ def is_somebody(graph: Graph) -> bool:
 
 def nobody(address: Ros2Address) -> str:
     """What to say where no node is found."""
+    if dict(address.settings).get(RANGE) == "OFF":
+        return f"with {RANGE}=OFF no node is found; unset it, or set it as in the robot's shell"
     settings = "".join(f", {name}={value}" for name, value in address.settings)
     return (
         f"no node in domain {address.domain}; {DOMAIN}={address.domain}{settings} must be as in the"

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from pytpc.base.errors import MissingToolError, RunError
+from pytpc.base.errors import MissingToolError, TpcError
 from pytpc.base.wording import many
-from pytpc.ros.ros2.address import DOMAIN, Ros2Address
+from pytpc.ros.ros2.address import DOMAIN, RANGE, Ros2Address
 from pytpc.ros.ros2.agent_process import Agent
 from pytpc.ros.ros2.found_nodes import is_somebody, visible
 from pytpc.ros.ros2.interpreter import HOW_TO
 from pytpc.ros.which import VARIABLE, asked_ros, sign_of_ros2
 from pytpc.workspace.doctor.finding import Finding, note, warning
 
-_RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
+_LAME = "record, mark, watch and sink do not work"
 
 
 def check_ros2_graph(env: Mapping[str, str]) -> list[Finding]:
@@ -23,15 +23,14 @@ def check_ros2_graph(env: Mapping[str, str]) -> list[Finding]:
     if asked == 1 or not (sign or asked):
         return []
     why = sign or f"{VARIABLE}=2"
-    address = Ros2Address.of_env(env)
     try:
+        address = Ros2Address.of_env(env)
         agent = Agent(address, env)
     except MissingToolError as error:
-        return [
-            warning(f"{why}, but {error}: record, mark, watch and sink do not work", mend=HOW_TO)
-        ]
-    except RunError as error:
-        return [warning(f"{error}: record, mark, watch and sink do not work", why)]
+        what = str(error).removesuffix(f"; {HOW_TO}")
+        return [warning(f"{_LAME}: {why}, but {what}", mend=HOW_TO)]
+    except TpcError as error:
+        return [warning(f"{_LAME}: {error}", why)]
     try:
         nodes = visible(agent.wait_for_graph(is_somebody).nodes)
     finally:
@@ -40,7 +39,7 @@ def check_ros2_graph(env: Mapping[str, str]) -> list[Finding]:
     found = [
         note(
             f"ROS 2 works ({why}): {about['rmw']}, domain {address.domain}, discovery"
-            f" {env.get(_RANGE) or 'as usual (SUBNET)'}, {many(len(nodes), 'node')} found",
+            f" {env.get(RANGE) or 'as usual (SUBNET)'}, {many(len(nodes), 'node')} found",
             about["python"],
         )
     ]

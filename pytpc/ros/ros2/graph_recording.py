@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import os
-import queue
 import threading
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -22,6 +21,7 @@ from pytpc.ingest.decoders import ROS2
 from pytpc.ingest.file_counts import NO_FILES, FileCounts
 from pytpc.ingest.messages import REPORTS, ROSOUT
 from pytpc.ingest.parameter_events import TOPIC, TYPE, decode_parameter_event
+from pytpc.ingest.ros2 import decode_log
 from pytpc.recording.marks import MarkMessages
 from pytpc.recording.parameter_values import ParameterValues, SetValue
 from pytpc.ros.folder_lock import alone_in
@@ -38,11 +38,12 @@ from pytpc.ros.mission_run import (
     save_run,
 )
 from pytpc.ros.ros2.address import Ros2Address
-from pytpc.ros.ros2.agent_process import Agent
+from pytpc.ros.ros2.agent_process import Agent, Graph
 from pytpc.ros.ros2.command_lines import CommandLines
 from pytpc.ros.ros2.found_nodes import nobody, visible
 from pytpc.ros.ros2.interpreter import launch_interpreter
 from pytpc.ros.ros2.mcap_file import McapFile
+from pytpc.ros.ros2.node_values import NodeValues
 from pytpc.ros.source import Source
 from pytpc.values.origins import PARAMS_FILE, START_FILE
 from pytpc.values.recording import MISSION_PATIENCE_S, save_origins, try_trace
@@ -57,10 +58,10 @@ KNOWN = {
 """The topics that TPC receives of each graph, and their types."""
 _TOLD_S = 0.2
 _POLL_S = 0.05
-# What a publisher sent before the recorder began is not of the mission, and comes at once.
+# What a publisher sent before the recorder began is not of the mission, and comes at once when the
+# recorder is connected to it. Later messages of that time are new ones, by a clock that is behind.
 _HISTORY_S = 3.0
 _LOOK_NS = 2 * 10**9
-_VALUE_S = 2.0
 _QUIET_S = 10.0
 NO_COMMAND_LINES = "no process of this machine has the nodes, and no launch file was given"
 _SIM_TIME = "use_sim_time"
@@ -160,42 +161,6 @@ class LaunchReading(threading.Thread):
         return self._found or (None, f"{self._launch} was not read in time")
 
 
-class _Values(threading.Thread):
-    """Asks each node once for its parameters; ``found`` has the events of those that answered.
-
-    A thread of its own: a node that hangs is given up after seconds.
-    """
-
-    def __init__(self, agent: Agent, command_lines: CommandLines) -> None:
-        super().__init__(name="values", daemon=True)
-        self._command_lines = command_lines
-        self.found: queue.SimpleQueue[bytes] = queue.SimpleQueue()
-        self._agent = agent
-        self._nodes: queue.SimpleQueue[str | None] = queue.SimpleQueue()
-        self._asked: set[str] = set()
-
-    def see(self, nodes: Sequence[str]) -> None:
-        """Ask those that are new; one that comes again is another process."""
-        for name in nodes:
-            if name not in self._asked and not name.rpartition("/")[2].startswith("_"):
-                self._nodes.put(name)
-        self._asked = set(nodes)
-
-    def run(self) -> None:
-        """Ask until ``close``."""
-        while (name := self._nodes.get()) is not None:
-            # Its process may not live long.
-            self._command_lines.look()
-            # A node may have no services of parameters.
-            with contextlib.suppress(RunError):
-                self.found.put(self._agent.values(name, _VALUE_S))
-
-    def close(self, patience_s: float) -> None:
-        """Ask no more."""
-        self._nodes.put(None)
-        self.join(patience_s)
-
-
 class GraphRecording:
     """A recording of a graph, which others may extend by what they look at."""
 
@@ -220,18 +185,23 @@ class GraphRecording:
         self._recorder.hold()
         self._topics = dict.fromkeys([*recorded, CLOCK])
         self.command_lines = CommandLines(agent.address.domain)
-        self._values = _Values(agent, self.command_lines)
+        self._values = NodeValues(agent)
         self._set: list[SetValue] = []
+        # The node and the parameter of each full name: both may have slashes.
+        self._names: dict[str, tuple[str, str]] = {}
+        self._seen: Graph | None = None
+        self._is_simulated = False
         self._missed = 0
         self._on_quiet = options.on_quiet
         self._event_source: Source | None = None
         self._waiting_events: list[bytes] = []
         self._began_ns = time.time_ns()
-        self._history_until = time.monotonic() + _HISTORY_S
+        # Until when what a logger said before the recording comes.
+        self._history_until: dict[bytes, float] = {}
         for topic in self._topics:
             # A node's log from before its subscriber was found would be lost otherwise.
-            agent.subscribe(topic, KNOWN.get(topic, ""), history=topic == ROSOUT)
-        self._values.start()
+            history = topic == ROSOUT if topic in KNOWN else None
+            agent.subscribe(topic, KNOWN.get(topic, ""), history=history)
 
     def run(
         self,
@@ -300,7 +270,8 @@ class GraphRecording:
         fault = self._agent.fault
         try:
             try:
-                self._values.close(0.1 if hurry or fault else _VALUE_S)
+                if not hurry:
+                    self._wait_for_values()
                 if not fault:
                     with contextlib.suppress(RunError):
                         self._agent.drain()
@@ -314,12 +285,26 @@ class GraphRecording:
         self._save_values()
         return self._status(closed=True), fault
 
+    def _wait_for_values(self) -> None:
+        """Wait for the values of nodes that have only just been found."""
+        while self._values.are_asked_for(self._agent.patience_s) and not self._agent.fault:
+            self.step(_POLL_S)
+
+    def _is_history(self, stamp_ns: int, data: bytes) -> bool:
+        """Whether a message on /rosout was sent before the recording."""
+        if not 0 < stamp_ns < self._began_ns:
+            return False
+        with contextlib.suppress(ValueError):
+            now = time.monotonic()
+            return now < self._history_until.setdefault(decode_log(data).node, now + _HISTORY_S)
+        return False
+
     def step(self, timeout_s: float) -> None:
         """Take the messages that have come."""
         self._look()
         for source, stamp_ns, data in self._agent.poll(timeout_s):
-            if 0 < stamp_ns < self._began_ns and time.monotonic() < self._history_until:
-                self._missed += source.topic == ROSOUT
+            if source.topic == ROSOUT and self._is_history(stamp_ns, data):
+                self._missed += 1
                 continue
             if source.topic == TOPIC:
                 self._see_event(data)
@@ -331,37 +316,40 @@ class GraphRecording:
 
     def _look(self) -> None:
         graph = self._agent.graph
-        for topic in graph.topics:
-            if MarkMessages.message_type(topic) is not None and topic not in self._topics:
-                self._topics[topic] = None
-                self._recorder.add_topic(topic)
-                self._agent.subscribe(topic)
-        self._values.see(graph.nodes)
-        simulated = graph.clock > 0 or any(
-            one.value is True and one.name.endswith(f"/{_SIM_TIME}") for one in self._set
-        )
+        if graph is not self._seen:
+            self._seen = graph
+            for topic in graph.topics:
+                if MarkMessages.message_type(topic) is not None and topic not in self._topics:
+                    self._topics[topic] = None
+                    self._recorder.add_topic(topic)
+                    self._agent.subscribe(topic)
+            # The process of a new node may not live long.
+            self.command_lines.look()
+            self._values.see(graph.nodes)
+        simulated = graph.clock > 0 or self._is_simulated
         if simulated or self._recorder.waited_ns > _LOOK_NS:
             self._recorder.see_sim_time(simulated)
         self._recorder.settle()
 
     def _take_values(self) -> None:
         """Put the values that nodes told into the file, as if these had just set them."""
-        while not self._values.found.empty():
-            self._waiting_events.append(self._values.found.get())
         if self._event_source is None:
             self._event_source = self._agent.source_of(TOPIC)
         if self._event_source is not None:
-            for event in self._waiting_events:
+            for event in self._values.told():
                 self._see_event(event)
                 self._recorder.take(self._event_source, event)
-            self._waiting_events.clear()
 
     def _see_event(self, data: bytes) -> None:
         with contextlib.suppress(ValueError):
             event = decode_parameter_event(data)
+            self._values.see_event(event.node)
             now_ns = event.stamp_ns or self._recorder.now_ns()
-            for name, value in event.values.items():
-                self._set.append(SetValue(now_ns, f"{event.node.rstrip('/')}/{name}", value))
+            self._is_simulated |= event.values.get(_SIM_TIME) is True
+            for parameter, value in event.values.items():
+                name = f"{event.node.rstrip('/')}/{parameter}"
+                self._names[name] = (event.node, parameter)
+                self._set.append(SetValue(now_ns, name, value))
 
     def _status(self, *, closed: bool = False) -> RecorderStatus:
         account = self._recorder.status(closed=closed)
@@ -379,8 +367,15 @@ class GraphRecording:
         """Write the values at the start and at the end, as files that `ros2` reads, too."""
         values, folder = ParameterValues(self._set), self._options.out_dir
         if values.names():
-            write_params(folder / START_FILE, values.first())
-            write_params(folder / PARAMS_FILE, values.last())
+            write_params(folder / START_FILE, self._by_node(values.first()))
+            write_params(folder / PARAMS_FILE, self._by_node(values.last()))
+
+    def _by_node(self, values: Mapping[str, object]) -> dict[str, dict[str, object]]:
+        nodes: dict[str, dict[str, object]] = {}
+        for name, value in sorted(values.items()):
+            node, parameter = self._names[name]
+            nodes.setdefault(node, {})[parameter] = value
+        return nodes
 
     def save_origins(
         self, launched: Trace | None, reason: str, env: Mapping[str, str], *, is_own: bool
@@ -404,15 +399,11 @@ class GraphRecording:
         save_origins(folder, folder / PARAMS_FILE, trace, "; ".join(why), env)
 
 
-def write_params(path: Path, values: Mapping[str, object]) -> None:
-    """Write values by full names as a parameters file of ROS 2.
+def write_params(path: Path, nodes: Mapping[str, Mapping[str, object]]) -> None:
+    """Write the values of nodes as a parameters file of ROS 2.
 
     Raises:
         TpcError: the file cannot be written.
     """
-    nodes: dict[str, dict[str, object]] = {}
-    for name, value in sorted(values.items()):
-        node, _, parameter = name.rpartition("/")
-        nodes.setdefault(node, {})[parameter] = value
-    document = {node: {"ros__parameters": found} for node, found in nodes.items()}
+    document = {node: {"ros__parameters": dict(found)} for node, found in nodes.items()}
     write_atomic(path, yaml.safe_dump(document, sort_keys=True).encode())

@@ -10,12 +10,12 @@ from pytpc.ingest.parameter_events import decode_parameter_event
 from pytpc.python_runtime.config import PARAMETERS
 from pytpc.ros.node_status import NodeStatus, Value, values_of
 from pytpc.ros.ros2.address import Ros2Address
-from pytpc.ros.ros2.agent_process import Agent, Graph
+from pytpc.ros.ros2.agent_process import AT_A_TIME, Agent, Graph
+from pytpc.ros.ros2.found_nodes import nobody, visible
 from pytpc.ros.ros2.parameter_types import type_number
 
 _HIDDEN = "/_tpc"
 _STATUS = "status"
-_AT_A_TIME = 16
 
 
 class Ros2Nodes:
@@ -31,8 +31,14 @@ class Ros2Nodes:
         self._refused: dict[str, str] = {}
 
     def names(self) -> list[str]:
-        """The names of the nodes, sorted."""
+        """The names of the nodes, sorted.
+
+        Raises:
+            RunError: there is no node at all.
+        """
         graph = self._agent.wait_for_graph(lambda graph: bool(_settable(graph)))
+        if not visible(graph.nodes):
+            raise RunError(self._agent.fault or nobody(self._agent.address))
         return sorted(name[: -len(_HIDDEN)] for name in _settable(graph))
 
     def set(self, node: str | None, settings: Mapping[str, Value]) -> None:
@@ -71,7 +77,7 @@ class Ros2Nodes:
 
     def reload_all(self, nodes: Sequence[str]) -> Iterator[NodeStatus]:
         """The settings that are in effect, of many nodes at a time, in their order."""
-        with ThreadPoolExecutor(_AT_A_TIME) as pool:
+        with ThreadPoolExecutor(AT_A_TIME) as pool:
             yield from pool.map(self._reload, nodes)
 
     def _reload(self, node: str) -> NodeStatus:

@@ -5,6 +5,7 @@ Protocol: rcl_interfaces/SetParameters. A node keeps the type that a parameter w
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from functools import cached_property
 
 from pytpc.base.closest import did_you_mean
@@ -12,7 +13,7 @@ from pytpc.base.errors import InputError, RunError
 from pytpc.ingest.parameter_events import decode_parameter_event
 from pytpc.ros.live_change import LiveChange
 from pytpc.ros.ros2.address import Ros2Address
-from pytpc.ros.ros2.agent_process import Agent
+from pytpc.ros.ros2.agent_process import AT_A_TIME, Agent
 from pytpc.ros.ros2.found_nodes import is_somebody, nobody, visible
 from pytpc.ros.ros2.parameter_types import type_number
 from pytpc.values.apply import shown
@@ -44,10 +45,12 @@ class Ros2Robot:
         nodes = visible(self._agent.wait_for_graph(is_somebody).nodes)
         if not nodes:
             raise RunError(nobody(self._address))
-        found: dict[str, object] = {}
-        for node in nodes:
-            found.update(self._of_node(node))
-        return found
+        with ThreadPoolExecutor(AT_A_TIME) as pool:
+            return {
+                name: value
+                for found in pool.map(self._of_node, nodes)
+                for name, value in found.items()
+            }
 
     def _of_node(self, node: str) -> dict[str, object]:
         try:

@@ -21,8 +21,6 @@ STRING = "std_msgs/msg/String"
 _CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 _HEAD = b"\0\1\0\0"
 _TIME = struct.Struct("<iI")
-# A recorder looks for new topics several times a second.
-_FOUND_S = 3.0
 _TICK_S = 0.2
 
 
@@ -70,7 +68,8 @@ class Ros2Marks(HeldMarks):
 
     @property
     def _waits(self) -> bool:
-        return time.monotonic() < self._since + _FOUND_S and not self._listeners()
+        is_new = time.monotonic() < self._since + self._agent.patience_s
+        return is_new and not self._listeners()
 
     def now_ns(self) -> int | None:
         """The graph's time: that of /clock if anybody publishes it, else the wall's."""

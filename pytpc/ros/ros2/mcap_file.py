@@ -233,7 +233,7 @@ class McapFile:
         except OSError:
             with contextlib.suppress(OSError):
                 self._stream.close()
-            what = f"cannot be written: {why}; make room, and recover it with mcap recover"
+            what = f"cannot be written: {why}; make room; rank and report read it as it is"
             return RunError(what, self._active)
         return RunError(
             f"the recording ended: {why}; the file is closed and has all but the last {lost}"

@@ -5,6 +5,7 @@ on standard input; what it hears goes to standard output. It imports nothing of 
 Python 3.8; `pipe` says what the frames are.
 """
 
+import collections
 import json
 import os
 import queue
@@ -14,12 +15,13 @@ import threading
 import time
 from typing import Any
 
+from .calls import Calls
 from .message_types import class_of, definition_of
 from .pipe import TIME, Writer, read_frame
 
 LOOK_S = 0.25
 DEPTH = 5000
-PATIENCE_S = 3.0
+ACKNOWLEDGED_S = 5.0
 KINDS = {
     1: "bool_value",
     2: "integer_value",
@@ -57,9 +59,12 @@ class Agent:
         self._wanted: Any = {}
         self._subscriptions: Any = {}
         self._by_number: Any = {}
+        # What makes subscriptions anew, by their numbers.
+        self._to_make: Any = {}
         self._publishers: Any = {}
-        self._clients: Any = {}
-        self._waiting: Any = {}
+        self._calls = Calls(self.node, writer)
+        # Messages without room, by the heads of their topics.
+        self._lost: Any = collections.Counter()
         self._graph: Any = None
         self.ended = False
 
@@ -97,17 +102,20 @@ class Agent:
         """Send what has come, and end."""
         for subscription in self._subscriptions.values():
             self._drain(*subscription)
+        self._tell_lost()
         self.ended = True
 
     def do_subscribe(self, head: Any, body: Any) -> None:
         """Subscribe to a topic, as soon as its type is known."""
-        self._wanted[head["topic"]] = (head.get("type"), bool(head.get("history")))
+        self._wanted[head["topic"]] = (head.get("type"), head.get("history"))
         self._subscribe_known(dict(self.node.get_topic_names_and_types()))
 
     def do_drain(self, head: Any, body: Any) -> None:
-        """Send what has come, and then the answer."""
+        """Send what has come, and then the answer, when others have what was published."""
         for subscription in self._subscriptions.values():
             self._drain(*subscription)
+        self._tell_lost()
+        self._wait_for_receivers()
         self._writer.put({"ev": "answer", "id": head["id"]})
 
     def do_advertise(self, head: Any, body: Any) -> None:
@@ -121,6 +129,15 @@ class Agent:
         """Publish bytes."""
         self._publishers[head["topic"]].publish(bytes(body))
 
+    def _wait_for_receivers(self) -> None:
+        """Wait until they have what was published, but not long for one that hangs."""
+        from rclpy.duration import Duration
+
+        until = time.monotonic() + ACKNOWLEDGED_S
+        for publisher in self._publishers.values():
+            left = max(0.0, until - time.monotonic())
+            publisher.wait_for_all_acked(Duration(seconds=left))
+
     def do_values(self, head: Any, body: Any) -> None:
         """Ask a node for all of its parameters; the answer is a ParameterEvent."""
         from rcl_interfaces.srv import GetParameters, ListParameters
@@ -128,17 +145,15 @@ class Agent:
         def listed(answer: Any) -> None:
             names = list(answer.result.names)
             request = GetParameters.Request(names=names)
-            self._call(head, GetParameters, "get_parameters", request, lambda a: got(names, a))
+            self._calls.call(
+                head,
+                GetParameters,
+                "get_parameters",
+                request,
+                lambda answer: self._answer_values(head, names, answer.values),
+            )
 
-        def got(names: Any, answer: Any) -> None:
-            self._answer_values(head, names, answer.values)
-
-        if "names" in head:
-            names = head["names"]
-            request = GetParameters.Request(names=names)
-            self._call(head, GetParameters, "get_parameters", request, lambda a: got(names, a))
-        else:
-            self._call(head, ListParameters, "list_parameters", ListParameters.Request(), listed)
+        self._calls.call(head, ListParameters, "list_parameters", ListParameters.Request(), listed)
 
     def _answer_values(self, head: Any, names: Any, values: Any) -> None:
         from rcl_interfaces.msg import Parameter, ParameterEvent
@@ -151,17 +166,6 @@ class Agent:
         self._writer.put(
             {"ev": "answer", "id": head["id"], "node": head["node"]}, serialize_message(event)
         )
-
-    def do_describe(self, head: Any, body: Any) -> None:
-        """Ask a node what it says of parameters: read-only, ranges."""
-        from rcl_interfaces.srv import DescribeParameters
-
-        def described(answer: Any) -> None:
-            found = {one.name: {"read_only": one.read_only} for one in answer.descriptors}
-            self._writer.put({"ev": "answer", "id": head["id"], "descriptors": found})
-
-        request = DescribeParameters.Request(names=head["names"])
-        self._call(head, DescribeParameters, "describe_parameters", request, described)
 
     def do_set(self, head: Any, body: Any) -> None:
         """Set parameters of a node; the answer has for each whether it was taken, and why not."""
@@ -181,47 +185,19 @@ class Agent:
             self._writer.put({"ev": "answer", "id": head["id"], "results": results})
 
         request = SetParameters.Request(parameters=parameters)
-        self._call(head, SetParameters, "set_parameters", request, done)
-
-    def _call(self, head: Any, kind: Any, service: Any, request: Any, then: Any) -> None:
-        """Call a service of a node; ``then`` gets the answer, or pytpc an error."""
-        name = "%s/%s" % (head["node"], service)
-        client = self._clients.get(name)
-        if client is None:
-            client = self._clients[name] = self.node.create_client(kind, name)
-        until = time.monotonic() + head.get("patience", PATIENCE_S)
-        self._waiting[head["id"], service] = [until, client, request, then, head, None]
-        self._look_calls()
-
-    def _look_calls(self) -> None:
-        """Send the calls whose servers are there by now, and give up the others in time."""
-        for key, call in list(self._waiting.items()):
-            until, client, request, _, head, sent = call
-            if sent is None and client.service_is_ready():
-                call[5] = sent = client.call_async(request)
-                sent.add_done_callback(lambda future, key=key: self._answered(key, future))
-            elif time.monotonic() > until:
-                del self._waiting[key]
-                what = "does not answer" if sent is not None else "does not offer"
-                said = "%s %s %s" % (head["node"], what, client.srv_name)
-                self._writer.put({"ev": "answer", "id": head["id"], "error": said})
-
-    def _answered(self, key: Any, future: Any) -> None:
-        call = self._waiting.pop(key, None)
-        if call is None:
-            return
-        try:
-            call[3](future.result())
-        except Exception as error:
-            self._writer.put({"ev": "answer", "id": call[4]["id"], "error": one_line(error)})
+        # Sent again, it might undo what somebody has set meanwhile.
+        once = dict(head, once=True)
+        self._calls.call(once, SetParameters, "set_parameters", request, done)
 
     def _look(self) -> None:
         """See what is on the graph; tell what is new."""
         self._take_commands()
-        self._look_calls()
         # The hidden nodes of TPC are there for whoever asks for settings.
         pairs = self.node.get_node_names_and_namespaces()
         nodes = sorted({space.rstrip("/") + "/" + name for name, space in pairs})
+        self._calls.look(nodes)
+        self._make_again()
+        self._tell_lost()
         own = self.node.get_fully_qualified_name()
         topics = dict(self.node.get_topic_names_and_types())
         graph = {
@@ -251,8 +227,6 @@ class Agent:
                 self._subscribe(topic, kinds[0], history)
 
     def _subscribe(self, topic: Any, kind: Any, history: Any) -> None:
-        from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
-
         try:
             message = class_of(kind)
             definition = definition_of(kind)
@@ -261,28 +235,64 @@ class Agent:
             what = "%s: the type %s is not installed (%s)" % (topic, kind, one_line(error))
             self._writer.put({"ev": "untaken", "topic": topic, "why": what})
             return
-        infos = self.node.get_publishers_info_by_topic(topic)
-        best = any(one.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT for one in infos)
-        qos = QoSProfile(
+        number = len(self._subscriptions)
+        head = json.dumps({"m": number}).encode()
+        told = {"ev": "subscribed", "number": number, "topic": topic, "type": kind}
+        self._writer.put(dict(told, definition=definition))
+        self._receive(topic, message, history, number, head)
+
+    def _receive(self, topic: Any, message: Any, history: Any, number: Any, head: Any) -> None:
+        """Make a subscription that fits those who publish now.
+
+        If ``history`` is None, one that does not fit those who come later is made anew.
+        """
+
+        def make(events: Any) -> Any:
+            return self.node.create_subscription(
+                message,
+                topic,
+                lambda data, info: self._first(number, data, info),
+                self._quality(topic, history),
+                raw=True,
+                event_callbacks=events,
+            )
+
+        def again() -> None:
+            if history is None:
+                self._to_make[number] = lambda: self._receive(topic, message, None, number, head)
+
+        try:
+            made = make(events_of(lambda count: self._lose(topic, count), again))
+        except Exception:
+            # Some middleware does not tell of lost messages.
+            made = make(None)
+        self._subscriptions[topic] = self._by_number[number] = (made, head)
+
+    def _quality(self, topic: Any, history: Any) -> Any:
+        """Of service. ``history``: with what was sent before; None: if all publishers offer it."""
+        from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+
+        found = self.node.get_publishers_info_by_topic(topic)
+        offers = [one.qos_profile for one in found]
+        best = any(one.reliability == ReliabilityPolicy.BEST_EFFORT for one in offers)
+        if history is None:
+            kept = [one.durability == DurabilityPolicy.TRANSIENT_LOCAL for one in offers]
+            history = bool(kept) and all(kept)
+        return QoSProfile(
             history=HistoryPolicy.KEEP_LAST,
             depth=DEPTH,
             reliability=ReliabilityPolicy.BEST_EFFORT if best else ReliabilityPolicy.RELIABLE,
             durability=DurabilityPolicy.TRANSIENT_LOCAL if history else DurabilityPolicy.VOLATILE,
         )
-        number = len(self._subscriptions)
-        head = json.dumps({"m": number}).encode()
-        told = {"ev": "subscribed", "number": number, "topic": topic, "type": kind}
-        self._writer.put(dict(told, definition=definition))
-        subscription = self.node.create_subscription(
-            message,
-            topic,
-            lambda data, info: self._first(number, data, info),
-            qos,
-            raw=True,
-            event_callbacks=events_of(lambda count: self._lose(topic, count)),
-        )
-        self._subscriptions[topic] = (subscription, head)
-        self._by_number[number] = (subscription, head)
+
+    def _make_again(self) -> None:
+        """Replace the subscriptions that do not fit a new publisher."""
+        for number, make in list(self._to_make.items()):
+            del self._to_make[number]
+            former, head = self._by_number[number]
+            self._drain(former, head)
+            self.node.destroy_subscription(former)
+            make()
 
     def _first(self, number: Any, data: Any, info: Any) -> None:
         subscription, head = self._by_number[number]
@@ -299,21 +309,36 @@ class Agent:
                 self._put(head, taken[0], taken[1])
 
     def _put(self, head: Any, data: Any, info: Any) -> None:
+        if not self._writer.has_room():
+            self._lost[head] += 1
+            return
         stamp = info.get("source_timestamp", 0) if isinstance(info, dict) else 0
         self._writer.put(head, TIME.pack(stamp) + bytes(data))
 
     def _lose(self, topic: Any, count: Any) -> None:
         self._writer.put({"ev": "lost", "topic": topic, "count": count})
 
+    def _tell_lost(self) -> None:
+        """Tell how many messages had no room."""
+        for topic, (_, head) in self._subscriptions.items():
+            if self._lost[head]:
+                self._lose(topic, self._lost.pop(head))
 
-def events_of(lose: Any) -> Any:
-    """Have ``lose`` called with the number of messages that the middleware has lost."""
+
+def events_of(lose: Any, misfit: Any) -> Any:
+    """What the middleware tells of a subscription.
+
+    ``lose`` is called with a number of messages that it has lost, and ``misfit`` when a publisher
+    does not offer what the subscription asks for.
+    """
     try:
         from rclpy.event_handler import SubscriptionEventCallbacks
     except ImportError:
         from rclpy.qos_event import SubscriptionEventCallbacks
     return SubscriptionEventCallbacks(
-        message_lost=lambda event: lose(event.total_count_change), use_default_callbacks=False
+        message_lost=lambda event: lose(event.total_count_change),
+        incompatible_qos=lambda _: misfit(),
+        use_default_callbacks=False,
     )
 
 

@@ -13,6 +13,8 @@ from typing import Any
 
 LENGTHS = struct.Struct("<II")
 TIME = struct.Struct("<q")
+# What waits at most for a reader that is stopped, so that the robot keeps its memory.
+MOST_BYTES = 256 << 20
 
 
 class Writer(threading.Thread):
@@ -24,13 +26,22 @@ class Writer(threading.Thread):
         self._parts: Any = collections.deque()
         self._has_parts = threading.Event()
         self._closed = False
+        # Each is changed by one thread alone.
+        self._taken_bytes = 0
+        self._written_bytes = 0
         self.start()
+
+    def has_room(self) -> Any:
+        """Whether there is room for a message: the reader is not too far behind."""
+        return self._taken_bytes - self._written_bytes < MOST_BYTES
 
     def put(self, head: Any, body: Any = b"") -> None:
         """Send a frame; ``head`` is a dictionary, or its JSON as bytes."""
         if not isinstance(head, bytes):
             head = json.dumps(head).encode()
-        self._parts.append(LENGTHS.pack(len(head), len(body)) + head + body)
+        frame = LENGTHS.pack(len(head), len(body)) + head + body
+        self._taken_bytes += len(frame)
+        self._parts.append(frame)
         self._has_parts.set()
 
     def run(self) -> None:
@@ -42,12 +53,14 @@ class Writer(threading.Thread):
             while self._parts:
                 parts.append(self._parts.popleft())
             data = memoryview(b"".join(parts))
+            size = len(data)
             try:
                 while data:
                     data = data[os.write(self._descriptor, data) :]
             except OSError:
                 # Nobody reads any more.
                 os._exit(0)
+            self._written_bytes += size
 
     def close(self) -> None:
         """Write what is left."""
