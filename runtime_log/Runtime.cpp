@@ -110,7 +110,8 @@ private:
   Config Filled;            ///< what holds
   bool IsStarted = false;   ///< changes while both are locked
   bool HasSettings = false; ///< Held was read or set, perhaps before a fork
-  bool HelperRuns = false;
+  /// The process may end in one thread while another one starts the helper.
+  std::atomic<bool> HelperRuns{false};
   pthread_t Helper{};
 
   // No lock: roscpp's threads wake the helper, and a signal handler may have
