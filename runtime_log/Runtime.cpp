@@ -184,7 +184,12 @@ void Runtime::start() {
   tellOfFile();
   // Only now: if memory ran out, the next report tries again.
   IsStarted = true;
-  startHelper();
+  // The topics of a child that was forked from a node reach nobody, so there is
+  // nothing to do. A thread that ends makes glibc unmap the stacks of the
+  // threads that are missing in the child, and the libraries of ROS, at their
+  // end, look for their threads there.
+  if (Held.Sink == SinkKind::File || !forkedFromNode())
+    startHelper();
 }
 
 /// \p C, but with the file in place of a topic of a ROS that cannot be used:

@@ -7,6 +7,8 @@
 //   read NAME           a parameter is read
 //   node NAME           one more node
 //   fork N              N reports in a child, which leaves by _exit
+//   child N             N reports in a child, which leaves by exit; prints its
+//                       status in place of `ok`
 //   shutdown            ends the node
 //   exit | quick        returns from main | _exit
 //
@@ -23,6 +25,7 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <string>
 #include <sys/wait.h>
@@ -95,6 +98,19 @@ int main(int Count, char **Words) {
         std::_Exit(0);
       }
       waitpid(Child, nullptr, 0);
+    } else if (Command == "child") {
+      long Reports;
+      std::cin >> Reports;
+      const pid_t Child = fork();
+      if (!Child) {
+        report(Reports, 0);
+        std::exit(0);
+      }
+      int Status;
+      waitpid(Child, &Status, 0);
+      std::printf("%d\n", Status);
+      std::fflush(stdout);
+      continue;
     } else if (Command == "shutdown") {
       check(rcl_node_fini(&Node));
       check(rcl_shutdown(&Context));

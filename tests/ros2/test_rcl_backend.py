@@ -284,6 +284,14 @@ def test_a_child_of_a_node_writes_to_a_file_alone(peer: Peer, start: Start, tmp_
     assert sum(len(read(file).events.cmp) for file in files) == 5
 
 
+@pytest.mark.parametrize("sink", ["auto", "topic"])
+def test_a_child_of_a_node_ends_as_it_would_without_reports(start: Start, sink: str) -> None:
+    node = start(sink=sink)
+    node.say("report 2 0")
+    assert node.say("child 5") == "0\n"
+    assert node.finish() == 0
+
+
 @pytest.mark.parametrize("sink", ["topic", "rosout"])
 def test_what_waits_is_sent_when_the_node_ends(peer: Peer, start: Start, sink: str) -> None:
     node = start(sink=sink)
