@@ -18,6 +18,8 @@ struct RclState {
   /// The full name of the first node; null before it. Never freed.
   std::atomic<const char *> Node{nullptr};
   std::atomic<int64_t> NodeSince{0}; ///< steady time
+  /// The number of that node's graph; -1 if it is not known.
+  std::atomic<int64_t> Domain{-1};
   /// Whether a clock of the program follows /clock, and what it was last told.
   std::atomic<bool> IsSimulated{false};
   std::atomic<int64_t> SimulatedNs{0};

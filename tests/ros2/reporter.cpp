@@ -1,6 +1,7 @@
 //===- reporter.cpp - A node on rcl alone that reports --------------------===//
 //
-// reporter NODE NAMESPACE [--ros-args ...]; reads one command from each line:
+// reporter NODE NAMESPACE [--ros-args ...]; reads one command from each line.
+// $REPORTER_DOMAIN is the number of its graph, in place of $ROS_DOMAIN_ID.
 //
 //   report N PAUSE_US   N reports, the values 0 to N-1; the outcome alternates
 //   simulated NS        the node's clock follows /clock, and it is NS
@@ -61,6 +62,9 @@ int main(int Count, char **Words) {
   rcl_allocator_t Allocator = rcl_get_default_allocator();
   rcl_init_options_t Options = rcl_get_zero_initialized_init_options();
   check(rcl_init_options_init(&Options, Allocator));
+  if (const char *Domain = std::getenv("REPORTER_DOMAIN"))
+    check(
+        rcl_init_options_set_domain_id(&Options, std::strtoul(Domain, {}, 10)));
   rcl_context_t Context = rcl_get_zero_initialized_context();
   check(rcl_init(Count, Words, &Options, &Context));
   rcl_node_options_t Of = rcl_node_get_default_options();

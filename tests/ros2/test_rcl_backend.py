@@ -108,11 +108,13 @@ def start(program: Path, domain: dict[str, str], tmp_path: Path) -> Iterator[Sta
     """Start a node: more words of its command line, then settings (``sink="file"``)."""
     started: list[Dialogue] = []
 
-    def run(*words: str, libraries: str = "", **settings: str) -> Dialogue:
+    def run(*words: str, libraries: str = "", chosen_domain: str = "", **settings: str) -> Dialogue:
         changed = {f"TPC_{name.upper()}": value for name, value in settings.items()}
         more = {"TPC_FOLDER": str(tmp_path / "reports"), **wheels_env(), **changed}
         if libraries:
             more["LD_LIBRARY_PATH"] = libraries
+        if chosen_domain:
+            more |= {"REPORTER_DOMAIN": chosen_domain, "ROS_DOMAIN_ID": "0"}
         node = Dialogue(
             [str(program), "guard", "/robot1", *words],
             ros2_env(domain, **more),
@@ -266,6 +268,15 @@ def test_the_first_node_names_the_process(peer: Peer, start: Start) -> None:
     node.say("report 1 0")
     (batch,) = peer.ask("heard", 1)["batches"]
     assert batch.split("\n")[0].endswith(",node:/robot1/keeper")
+    assert node.finish() == 0
+
+
+def test_reports_go_to_the_graph_that_the_program_has_chosen(
+    peer: Peer, start: Start, domain: dict[str, str]
+) -> None:
+    node = start(chosen_domain=domain["ROS_DOMAIN_ID"], sink="topic")
+    node.say("report 2 0")
+    assert peer.values(2) == [0, 1]
     assert node.finish() == 0
 
 
