@@ -13,6 +13,9 @@
 
 namespace tpc {
 
+/// What rcl returns.
+static constexpr int32_t Ok = 0, Error = 1;
+
 RclState &RclState::of() {
   static auto &Only = *new RclState;
   return Only;
@@ -44,6 +47,11 @@ static void noteNode(const void *Node, const char *Name) {
   ++S.Nodes;
   if (S.Node.load())
     return;
+  static auto *DomainOf =
+      next<int32_t(const void *, size_t *)>("rcl_node_get_domain_id");
+  size_t Domain = 0;
+  if (DomainOf && DomainOf(Node, &Domain) == Ok)
+    S.Domain = static_cast<int64_t>(Domain);
   const char *Kept = strdup(Full), *Nobody = nullptr;
   S.NodeSince = Clock::steady();
   S.Node.compare_exchange_strong(Nobody, Kept);
@@ -64,9 +72,6 @@ static void noteClock(const void *Clock, bool Follows) {
 } // namespace tpc
 
 using namespace tpc;
-
-/// What rcl returns.
-static constexpr int32_t Ok = 0, Error = 1;
 
 // Their names are those of rcl. NOLINTBEGIN(readability-identifier-naming)
 #define TPC_OF_RCL extern "C" __attribute__((visibility("default"))) int32_t

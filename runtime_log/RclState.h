@@ -20,6 +20,8 @@ struct RclState {
   std::atomic<int64_t> NodeSince{0}; ///< steady time
   /// How many nodes were made.
   std::atomic<uint32_t> Nodes{0};
+  /// The number of that node's graph; -1 if it is not known.
+  std::atomic<int64_t> Domain{-1};
   /// Whether a clock of the program follows /clock, and what it was last told.
   std::atomic<bool> IsSimulated{false};
   std::atomic<int64_t> SimulatedNs{0};

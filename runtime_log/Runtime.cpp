@@ -110,7 +110,8 @@ private:
   Config Filled;            ///< what holds
   bool IsStarted = false;   ///< changes while both are locked
   bool HasSettings = false; ///< Held was read or set, perhaps before a fork
-  bool HelperRuns = false;
+  /// The process may end in one thread while another one starts the helper.
+  std::atomic<bool> HelperRuns{false};
   pthread_t Helper{};
 
   // No lock: roscpp's threads wake the helper, and a signal handler may have
@@ -183,7 +184,12 @@ void Runtime::start() {
   tellOfFile();
   // Only now: if memory ran out, the next report tries again.
   IsStarted = true;
-  startHelper();
+  // The topics of a child that was forked from a node reach nobody, so there is
+  // nothing to do. A thread that ends makes glibc unmap the stacks of the
+  // threads that are missing in the child, and the libraries of ROS, at their
+  // end, look for their threads there.
+  if (Held.Sink == SinkKind::File || !forkedFromNode())
+    startHelper();
 }
 
 /// \p C, but with the file in place of a topic of a ROS that cannot be used:

@@ -13,21 +13,23 @@ using namespace llvm;
 namespace tpc {
 
 /// The mangled name of the virtual function that \p Class declares in \p Slot,
-/// or the nearest of its bases at the beginning of the object; empty if none
-/// does.
-static StringRef declaredIn(const DICompositeType &Class, unsigned Slot) {
-  const DICompositeType *First = nullptr;
-  for (const DINode *N : Class.getElements()) {
-    if (const auto *Method = dyn_cast_or_null<DISubprogram>(N);
-        Method && Method->getVirtuality() && Method->getVirtualIndex() == Slot)
-      return Method->getLinkageName();
-    const auto *Base = dyn_cast_or_null<DIDerivedType>(N);
-    if (Base && Base->getTag() == dwarf::DW_TAG_inheritance &&
-        Base->getOffsetInBits() == 0 && !First)
-      First = dyn_cast_or_null<DICompositeType>(
-          DebugTypes::plain(Base->getBaseType()));
-  }
-  return First ? declaredIn(*First, Slot) : "";
+/// or one of its bases at the beginning of the object; of a class whose
+/// members are not known, what \p Tables has. Empty if none does.
+static StringRef declaredIn(const DICompositeType &Class, unsigned Slot,
+                            const Rules &Tables) {
+  if (Class.isForwardDecl())
+    return Tables.symbolAt(nameWithScopes(Class), Slot);
+  if (const DISubprogram *Method = virtualIn(Class, Slot))
+    return Method->getLinkageName();
+  for (const DINode *N : Class.getElements())
+    if (const auto *Base = dyn_cast_or_null<DIDerivedType>(N);
+        Base && Base->getTag() == dwarf::DW_TAG_inheritance &&
+        Base->getOffsetInBits() == 0)
+      if (const auto *First = dyn_cast_or_null<DICompositeType>(
+              DebugTypes::plain(Base->getBaseType())))
+        if (StringRef Name = declaredIn(*First, Slot, Tables); !Name.empty())
+          return Name;
+  return "";
 }
 
 /// The function \p Name for \p Call; added to \p M if it is not there. Null if
@@ -55,9 +57,7 @@ void nameVirtualCalls(Module &M, const Rules &Tables) {
               : nullptr;
       if (!Class)
         continue;
-      StringRef Name = Class->isForwardDecl()
-                           ? Tables.symbolAt(nameWithScopes(*Class), How->Slot)
-                           : declaredIn(*Class, How->Slot);
+      StringRef Name = declaredIn(*Class, How->Slot, Tables);
       if (!Name.empty() && Tables.hasRow(Name))
         Found.push_back({Call, Name});
     }

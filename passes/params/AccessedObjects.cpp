@@ -49,19 +49,28 @@ static Value *objectOf(const ParameterRead &Read,
   return Read.Call->getType()->isPointerTy() ? Read.Call : nullptr;
 }
 
-/// \p Made and the objects that it is copied to: a call whose only arguments
-/// are it and another object is an assignment or a copy constructor.
+/// True if \p F is a constructor or an assignment: it gives its first argument
+/// the value of the second, if there is one.
+static bool givesValue(const Function &F) {
+  const std::string Name = qualifiedName(F.getName());
+  auto [Scope, Own] = StringRef(Name).rsplit("::");
+  return Own == "operator=" || (!Own.empty() && Own == unscoped(Scope));
+}
+
+/// \p Made and the objects that it is copied to.
 static MadeObject madeBy(unsigned Read, Value *Made, PointsTo &Pointers) {
   MadeObject O{Read, Made, {}, Pointers.resolve(Made, false)};
-  O.Pointers.insert(Made->stripPointerCasts());
+  O.Pointers.insert(Made);
   for (const User *U : Made->users()) {
     const auto *Assign = dyn_cast<CallBase>(U);
-    if (!Assign || Assign->arg_size() != 2 || Assign->getArgOperand(1) != Made)
+    const Function *F = Assign ? Assign->getCalledFunction() : nullptr;
+    if (!F || Assign->arg_size() != 2 || Assign->getArgOperand(1) != Made ||
+        !givesValue(*F))
       continue;
     const Value *To = Assign->getArgOperand(0);
     if (!To->getType()->isPointerTy())
       continue;
-    O.Pointers.insert(To->stripPointerCasts());
+    O.Pointers.insert(To);
     append_range(O.Where, Pointers.resolve(To, false));
   }
   return O;
@@ -123,6 +132,7 @@ private:
                const CallBase &At, std::set<std::string> &Out);
   Numbers lastAssigned(const Value *Local, const Instruction &At,
                        unsigned Depth = 0);
+  bool addReturned(const Function &F, SmallSetVector<unsigned, 2> &Out) const;
   SmallVector<unsigned, 2> storedAt(const Value *Object);
   void addValues(unsigned Read, StringRef Type, ArrayRef<Value *> Values);
 
@@ -189,7 +199,7 @@ const Value *ObjectFinder::objectBehind(const Accessor &A) const {
       break;
     Object = objectOf(*Outer, *Row);
   }
-  return Object ? Object->stripPointerCasts() : nullptr;
+  return Object;
 }
 
 /// Adds the text that \p Test, described by \p Row, compares \p Name with, if
@@ -226,7 +236,7 @@ std::set<std::string> ObjectFinder::namesTested(const CallBase &At,
     const Rule *Row = Rules.match(*Identity);
     const Value *Of = objectOf(*Identity, *Row);
     if (Identity->getFunction() != At.getFunction() || !Of ||
-        !isSameVariable(Of->stripPointerCasts(), Object))
+        !isSameVariable(Of, Object))
       continue;
     // The name itself, and the strings that are copies of it.
     SmallVector<const Value *, 2> Names{Identity};
@@ -248,13 +258,36 @@ std::set<std::string> ObjectFinder::namesTested(const CallBase &At,
   return Found;
 }
 
+/// True if the address of \p Local, a local object, is stored, such as in
+/// a lambda that may assign to it.
+static bool isKept(const Value &Local) {
+  return any_of(Local.users(), [&](const User *U) {
+    const auto *Store = dyn_cast<StoreInst>(U);
+    return Store && Store->getValueOperand() == &Local;
+  });
+}
+
+/// True if \p Call, of \p Callee, does not assign to its argument \p Local.
+static bool leavesUnchanged(const CallBase &Call, const Function &Callee,
+                            const Value *Local) {
+  if (Callee.getName().starts_with("_ZNK") && Call.getArgOperand(0) == Local)
+    return true;
+  if (StringRef(qualifiedName(Callee.getName())).contains("::~"))
+    return true;
+  const SmallBitVector Const = constArguments(Callee);
+  for (const auto &[N, Argument] : enumerate(Call.args()))
+    if (Argument.get() == Local && (N >= Const.size() || !Const[N]))
+      return false;
+  return true;
+}
+
 /// The reads that gave \p Local, a local object, the value that it has at
 /// \p At.
 ObjectFinder::Numbers ObjectFinder::lastAssigned(const Value *Local,
                                                  const Instruction &At,
                                                  unsigned Depth) {
   constexpr unsigned MaxDepth = 4, MaxBlocks = 500;
-  if (!isa<AllocaInst>(Local) || Depth == MaxDepth)
+  if (!isa<AllocaInst>(Local) || Depth == MaxDepth || isKept(*Local))
     return std::nullopt;
   SmallSetVector<unsigned, 2> Found;
   SmallPtrSet<const BasicBlock *, 16> Seen;
@@ -276,11 +309,14 @@ ObjectFinder::Numbers ObjectFinder::lastAssigned(const Value *Local,
         return true;
       }
     const Function *Callee = Call.getCalledFunction();
-    if (!Callee || Call.getArgOperand(0) != Local)
+    if (!Callee)
       return std::nullopt;
-    if (Callee->getName().starts_with("_ZNK") ||
-        StringRef(qualifiedName(Callee->getName())).contains("::~"))
+    if (Call.hasStructRetAttr() && Call.getArgOperand(0) == Local)
+      return addReturned(*Callee, Found) ? std::optional(true) : std::nullopt;
+    if (leavesUnchanged(Call, *Callee, Local))
       return false;
+    if (Call.getArgOperand(0) != Local || !givesValue(*Callee))
+      return std::nullopt;
     if (Call.arg_size() == 1)
       return true; // A new object, without a value.
     Numbers From = lastAssigned(Call.getArgOperand(1), Call, Depth + 1);
@@ -305,6 +341,20 @@ ObjectFinder::Numbers ObjectFinder::lastAssigned(const Value *Local,
       return std::nullopt;
   }
   return Found.empty() ? std::nullopt : Numbers(std::move(Found));
+}
+
+/// Adds the reads that make the object that \p F returns; false if there are
+/// none.
+bool ObjectFinder::addReturned(const Function &F,
+                               SmallSetVector<unsigned, 2> &Out) const {
+  bool IsFound = false;
+  for (const MadeObject &O : Objects)
+    if (const auto *Result = dyn_cast<Argument>(O.Made);
+        Result && Result->getParent() == &F && Result->hasStructRetAttr()) {
+      Out.insert(O.Read);
+      IsFound = true;
+    }
+  return IsFound;
 }
 
 /// The reads whose objects are stored where \p Object is.

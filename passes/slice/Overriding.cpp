@@ -99,11 +99,7 @@ static std::optional<bool> declares(const DICompositeType *Class,
                                     unsigned Slot) {
   if (!Class || Class->isForwardDecl())
     return std::nullopt;
-  return any_of(Class->getElements(), [&](const DINode *N) {
-    const auto *Method = dyn_cast_or_null<DISubprogram>(N);
-    return Method && Method->getVirtuality() &&
-           Method->getVirtualIndex() == Slot;
-  });
+  return virtualIn(*Class, Slot) != nullptr;
 }
 
 bool OverrideFinder::isCalledThroughClass(const Function &F) const {

@@ -21,6 +21,17 @@ DebugTypes DebugTypesAnalysis::run(Module &M, ModuleAnalysisManager &) {
   return DebugTypes(M.getDataLayout());
 }
 
+const DISubprogram *virtualIn(const DICompositeType &Class, unsigned Slot) {
+  for (const DINode *N : Class.getElements())
+    // A destructor, which has two slots, has the number 0 here.
+    if (const auto *Method = dyn_cast_or_null<DISubprogram>(N);
+        Method && Method->getVirtuality() &&
+        Method->getVirtualIndex() == Slot &&
+        !Method->getName().starts_with("~"))
+      return Method;
+  return nullptr;
+}
+
 bool isSmartPointer(const DIType *T) {
   StringRef Name = T ? T->getName().split('<').first : "";
   return Name == "shared_ptr" || Name == "unique_ptr";

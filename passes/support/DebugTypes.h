@@ -97,6 +97,10 @@ bool isSmartPointer(const llvm::DIType *T);
 /// T of the class template A<T, ...> that \p Class is made of; null if it is
 /// not made of one.
 const llvm::DIType *firstArgumentOf(const llvm::DICompositeType &Class);
+/// The virtual function, other than the destructor, that \p Class itself
+/// declares in \p Slot of its table; null if none is known.
+const llvm::DISubprogram *virtualIn(const llvm::DICompositeType &Class,
+                                    unsigned Slot);
 /// True for a smart pointer through which nothing can be written.
 bool pointsToConst(const llvm::DIType *T);
 

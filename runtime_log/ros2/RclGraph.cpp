@@ -69,6 +69,10 @@ bool RclGraph::begin(const std::string &Name, std::string &Why) {
   bool IsMade = false;
   if (rcl_init_options_init(&Options, rcl_get_default_allocator()) ==
       RCL_RET_OK) {
+    // The program may have chosen another one than the environment has.
+    if (const int64_t Domain = host().rcl().Domain; Domain >= 0)
+      isOk(rcl_init_options_set_domain_id(&Options,
+                                          static_cast<size_t>(Domain)));
     Context = rcl_get_zero_initialized_context();
     // The arguments of the command line would rename the node.
     IsMade = rcl_init(0, nullptr, &Options, &Context) == RCL_RET_OK;

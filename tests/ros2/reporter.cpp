@@ -1,6 +1,7 @@
 //===- reporter.cpp - A node on rcl alone that reports --------------------===//
 //
-// reporter NODE NAMESPACE [--ros-args ...]; reads one command from each line:
+// reporter NODE NAMESPACE [--ros-args ...]; reads one command from each line.
+// $REPORTER_DOMAIN is the number of its graph, in place of $ROS_DOMAIN_ID.
 //
 //   report N PAUSE_US   N reports, the values 0 to N-1; the outcome alternates
 //   simulated NS        the node's clock follows /clock, and it is NS
@@ -11,6 +12,8 @@
 //   read_in NODE NAME AT SIZE   an object there reads a parameter of the node
 //   of AT N             N reports of the object there
 //   fork N              N reports in a child, which leaves by _exit
+//   child N             N reports in a child, which leaves by exit; prints its
+//                       status in place of `ok`
 //   shutdown            ends the node
 //   exit | quick        returns from main | _exit
 //
@@ -27,6 +30,7 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <string>
 #include <sys/wait.h>
@@ -62,6 +66,9 @@ int main(int Count, char **Words) {
   rcl_allocator_t Allocator = rcl_get_default_allocator();
   rcl_init_options_t Options = rcl_get_zero_initialized_init_options();
   check(rcl_init_options_init(&Options, Allocator));
+  if (const char *Domain = std::getenv("REPORTER_DOMAIN"))
+    check(
+        rcl_init_options_set_domain_id(&Options, std::strtoul(Domain, {}, 10)));
   rcl_context_t Context = rcl_get_zero_initialized_context();
   check(rcl_init(Count, Words, &Options, &Context));
   rcl_node_options_t Of = rcl_node_get_default_options();
@@ -121,6 +128,19 @@ int main(int Count, char **Words) {
         std::_Exit(0);
       }
       waitpid(Child, nullptr, 0);
+    } else if (Command == "child") {
+      long Reports;
+      std::cin >> Reports;
+      const pid_t Child = fork();
+      if (!Child) {
+        report(Reports, 0);
+        std::exit(0);
+      }
+      int Status;
+      waitpid(Child, &Status, 0);
+      std::printf("%d\n", Status);
+      std::fflush(stdout);
+      continue;
     } else if (Command == "shutdown") {
       check(rcl_node_fini(&Node));
       check(rcl_shutdown(&Context));

@@ -40,11 +40,13 @@ def start(program: Path, domain: dict[str, str], tmp_path: Path) -> Iterator[Sta
     """Start a node: more words of its command line, then settings (``sink="file"``)."""
     started: list[Dialogue] = []
 
-    def run(*words: str, libraries: str = "", **settings: str) -> Dialogue:
+    def run(*words: str, libraries: str = "", chosen_domain: str = "", **settings: str) -> Dialogue:
         changed = {f"TPC_{name.upper()}": value for name, value in settings.items()}
         more = {"TPC_FOLDER": str(tmp_path / "reports"), **wheels_env(), **changed}
         if libraries:
             more["LD_LIBRARY_PATH"] = libraries
+        if chosen_domain:
+            more |= {"REPORTER_DOMAIN": chosen_domain, "ROS_DOMAIN_ID": "0"}
         node = Dialogue(
             [str(program), "guard", "/robot1", *words],
             ros2_env(domain, **more),
@@ -264,6 +266,15 @@ def test_a_listener_hears_the_nodes_with_the_first_reports(peer: Peer, start: St
     assert node.finish() == 0
 
 
+def test_reports_go_to_the_graph_that_the_program_has_chosen(
+    peer: Peer, start: Start, domain: dict[str, str]
+) -> None:
+    node = start(chosen_domain=domain["ROS_DOMAIN_ID"], sink="topic")
+    node.say("report 2 0")
+    assert peer.values(2) == [0, 1]
+    assert node.finish() == 0
+
+
 def test_a_child_of_a_node_writes_to_a_file_alone(peer: Peer, start: Start, tmp_path: Path) -> None:
     node = start(sink="topic")
     node.say("report 2 0")
@@ -277,6 +288,14 @@ def test_a_child_of_a_node_writes_to_a_file_alone(peer: Peer, start: Start, tmp_
     assert node.finish() == 0
     files = list((tmp_path / "reports").iterdir())
     assert sum(len(read(file).events.cmp) for file in files) == 5
+
+
+@pytest.mark.parametrize("sink", ["auto", "topic"])
+def test_a_child_of_a_node_ends_as_it_would_without_reports(start: Start, sink: str) -> None:
+    node = start(sink=sink)
+    node.say("report 2 0")
+    assert node.say("child 5") == "0\n"
+    assert node.finish() == 0
 
 
 @pytest.mark.parametrize("sink", ["topic", "rosout"])
