@@ -74,6 +74,7 @@ private:
     Touches = 4,   ///< a call that gets an object which matters
     Exposes = 8,   ///< an exposing statement
     Throwing = 16, ///< a call: whether it throws matters
+    Called = 32,   ///< whether its function is called matters
   };
   struct Item {
     Instruction *I;
@@ -84,6 +85,7 @@ private:
   using Why = SliceStep::WhyTy;
 
   unsigned addStep(Instruction *I, Why Because);
+  bool isOfResult(Why Because) const;
   void enter(Instruction *I, unsigned char Reasons, Why Because);
   void enterDecider(Instruction *Predicate, Why Because);
   void process(const Item &It);
@@ -136,6 +138,8 @@ private:
   unsigned Round = 1;
   unsigned Current = 0; ///< exposing statement of the current item
   unsigned Here = 0;    ///< step of the current item
+  /// The current item matters for the result of a call that is in the slice.
+  bool OfResult = false;
 };
 
 unsigned Slicer::addStep(Instruction *I, Why Because) {
@@ -143,12 +147,24 @@ unsigned Slicer::addStep(Instruction *I, Why Because) {
   return Result.Steps.size() - 1;
 }
 
+/// True if what enters now only matters for the result of a call that is in the
+/// slice: then that call decides whether it runs, and other calls of the
+/// function have results of their own.
+bool Slicer::isOfResult(Why Because) const {
+  if (IsThesis)
+    return false;
+  return Because == Why::Returns ||
+         (OfResult && (Because == Why::Gives || Because == Why::Chooses ||
+                       Because == Why::Controls));
+}
+
 void Slicer::enter(Instruction *I, unsigned char Reasons, Why Because) {
   // What a lock or a reference count keeps is no value of the robot.
   if (Because == Why::Writes && isCounting(*I))
     return;
   unsigned char &Have = Seen[I];
-  unsigned char New = (Reasons | Runs) & ~Have;
+  const unsigned char OfCalls = isOfResult(Because) ? 0 : Called;
+  unsigned char New = (Reasons | Runs | OfCalls) & ~Have;
   if (!New)
     return;
   Have |= New;
@@ -182,7 +198,7 @@ bool Slicer::isCounting(const Instruction &I) {
 void Slicer::enterControllers(const Instruction &I) {
   for (Instruction *Predicate : Ifs.controllers(I))
     enterDecider(Predicate, Why::Controls);
-  if (Ifs.isControlledByEntry(I)) {
+  if (!OfResult && Ifs.isControlledByEntry(I)) {
     for (CallBase *Call : Calls.callers(I.getFunction()))
       enter(Call, Runs, Why::Calls);
     // Passing on one of several functions is the choice of a value.
@@ -526,7 +542,8 @@ void Slicer::enterOperands(Instruction &I) {
 void Slicer::process(const Item &It) {
   Current = It.Exposing;
   Here = It.Step;
-  if (It.Reasons & Runs)
+  OfResult = !(It.Reasons & Called);
+  if (It.Reasons & (Runs | Called))
     enterControllers(*It.I);
   if (const auto *Call = dyn_cast<CallBase>(It.I))
     enterVirtualCall(*Call);

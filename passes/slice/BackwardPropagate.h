@@ -16,8 +16,9 @@
 // everything that can be reached from its arguments. A call that is in the
 // slice only for what it calls, not for its result, adds no operands.
 //
-// Calls and returns are not matched: calls are distinguished by their callee
-// alone, as in the thesis.
+// What enters for the result of a call runs if that call does: other calls of
+// the function do not enter for it. Otherwise calls and returns are not
+// matched: calls are distinguished by their callee alone, as in the thesis.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_BACKWARDPROPAGATE_H
