@@ -12,21 +12,29 @@ from __future__ import annotations
 
 import os
 import sys
+from types import CodeType
 from typing import TYPE_CHECKING, Any
 
 from pytpc.python_runtime import ros2_state
 from pytpc.python_runtime.sites import Reported
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
     from types import FrameType
 
     from pytpc.python_runtime.sites import Take
 
-_HERE = os.path.dirname(__file__) + os.sep
-_RCLPY = f"{os.sep}rclpy{os.sep}"
+_FOLDER = os.path.dirname(__file__) + os.sep
 _MOST_FRAMES = 32
 _MOST_ATTRIBUTES = 256
+# Where code is, if in no function of the program: none has such an argument.
+_HERE, _RCLPY, _MODULE = " here", " rclpy", " module"
+# By `id`: code takes long to hash. It is kept, so that no other has its number.
+_WHERE: dict[int, tuple[CodeType, str]] = {}
+# What the objects of a class are: nodes, others with attributes, or without.
+_NODE, _OTHER, _PLAIN = "node", "other", "plain"
+_KINDS: dict[type, str] = {}
+_MOST_KNOWN = 4096
 
 
 class Split:
@@ -79,39 +87,57 @@ def node_of_frame(frame: FrameType | None) -> str:
     """The full name of the node that the code of a frame works for; empty if it is not known."""
     is_called_back = False
     for _ in range(_MOST_FRAMES):
-        if frame is None or frame.f_code.co_name == "<module>":
+        if frame is None:
             break
-        path = frame.f_code.co_filename
-        is_rclpy = _RCLPY in path
-        if is_called_back and not is_rclpy:
-            break
-        is_called_back = is_rclpy
-        if is_rclpy:
+        code = frame.f_code
+        known = _WHERE.get(id(code))
+        where = _where(code) if known is None else known[1]
+        if where is _RCLPY:
+            is_called_back = True
             found = ros2_state.name_of_owner(frame.f_locals.values())
-        else:
-            found = "" if path.startswith(_HERE) else _in_frame(frame)
-        if found:
-            return found
+            if found:
+                return found
+        elif is_called_back or where is _MODULE:
+            break
+        elif where is not _HERE:
+            found = _in_frame(frame.f_locals, where)
+            if found:
+                return found
         frame = frame.f_back
     return ""
 
 
-def _in_frame(frame: FrameType) -> str:
-    code, values = frame.f_code, frame.f_locals
-    first = code.co_varnames[0] if code.co_argcount else "self"
-    for name in (first, "self"):
-        if name in values:
-            found = _of_object(values[name])
-            if found:
-                return found
-    return _only(values.values())
+def _where(code: CodeType) -> str:
+    """Where code is; for a function of the program, the name of its first argument."""
+    path = code.co_filename
+    if path.startswith(_FOLDER):
+        found = _HERE
+    elif f"{os.sep}rclpy{os.sep}" in path:
+        found = _RCLPY
+    elif code.co_name == "<module>":
+        found = _MODULE
+    else:
+        found = code.co_varnames[0] if code.co_argcount else "self"
+    if len(_WHERE) >= _MOST_KNOWN:
+        _WHERE.clear()
+    _WHERE[id(code)] = code, found
+    return found
+
+
+def _in_frame(values: dict[str, Any], first: str) -> str:
+    found = _of_object(values.get(first))
+    if not found and first != "self":
+        found = _of_object(values.get("self"))
+    return found or _only(values.values())
 
 
 def _of_object(value: object) -> str:
     """The node that an object is, or has; nothing of the program's is called."""
-    found = _only([value])
-    if found:
-        return found
+    what = _KINDS.get(type(value)) or _kind(type(value))
+    if what is _NODE:
+        return ros2_state.name_of(value)
+    if what is _PLAIN:
+        return ""
     try:
         own = object.__getattribute__(value, "__dict__")
     except AttributeError:
@@ -119,12 +145,27 @@ def _of_object(value: object) -> str:
     return _only(own.values()) if type(own) is dict and len(own) <= _MOST_ATTRIBUTES else ""
 
 
-def _only(values: Any) -> str:  # noqa: ANN401
+def _only(values: Iterable[object]) -> str:
     """The one node among these."""
-    kind = ros2_state.kind()
-    names = {ros2_state.name_of(each) for each in values if kind in type(each).__mro__}
-    names.discard("")
-    return names.pop() if len(names) == 1 else ""
+    only = ""
+    for value in values:
+        kind = type(value)
+        if (_KINDS.get(kind) or _kind(kind)) is _NODE:
+            name = ros2_state.name_of(value)
+            if only and name and name != only:
+                return ""
+            only = name or only
+    return only
+
+
+def _kind(kind: type) -> str:
+    """What the objects of a class are."""
+    is_node = ros2_state.kind() in kind.__mro__
+    found = _NODE if is_node else _OTHER if kind.__dictoffset__ else _PLAIN
+    if len(_KINDS) >= _MOST_KNOWN:
+        _KINDS.clear()
+    _KINDS[kind] = found
+    return found
 
 
 def lines_of(reported: list[Reported]) -> list[str]:

@@ -52,6 +52,8 @@ class _State:
     is_simulated = False
     asked_at = 0
     kind: Any = None
+    # Of those nodes, by `id`; nodes that are no more may have left theirs.
+    names: dict[int, str] = {}  # noqa: RUF012
     tell: Callable[[], None] | None = None
 
 
@@ -90,6 +92,7 @@ def _came(kind: Any, node: Any) -> None:  # noqa: ANN401
         name = str(kind.get_fully_qualified_name(node))
         _forget_dead()
         _State.nodes.append(_Known(node, name, _domain_of(node)))
+        _State.names[id(node)] = name
         _ask()
         if _State.tell is not None:
             _State.tell()
@@ -133,8 +136,8 @@ def kind() -> Any:  # noqa: ANN401
 
 
 def name_of(node: object) -> str:
-    """The fully qualified name of a node of the program; empty if it is none."""
-    return next((one.name for one in _State.nodes if one.node() is node), "")
+    """The fully qualified name of this node; empty if it is TPC's own."""
+    return _State.names.get(id(node), "")
 
 
 def name_of_owner(values: Iterable[object]) -> str:
