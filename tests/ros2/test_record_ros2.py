@@ -211,6 +211,12 @@ def test_nobody_is_there_and_other_wrong_settings(env: dict[str, str], tmp_path:
         assert "Traceback" not in said
 
 
+def test_relay_says_what_takes_its_place(env: dict[str, str], tmp_path: Path) -> None:
+    said = told(env, tmp_path, "relay", status=1)
+    assert said.endswith("do so after: pytpc sink --sink topic\n")
+    assert len(said.splitlines()) == 1
+
+
 def test_a_killed_agent_loses_nothing_of_what_was_recorded(
     env: dict[str, str], tmp_path: Path
 ) -> None:

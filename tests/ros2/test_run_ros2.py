@@ -248,7 +248,8 @@ def test_a_marked_run_ends_with_the_verdict_and_the_command_for_the_params_file(
         said = terminal.text
     assert "speed_limit" in said
     assert (tmp_path / "mission/report.html").is_file()
-    assert f"{params.name}:3" in told(env, tmp_path, "rank", "mission", "--json")
+    assert f"{params}:3" in (tmp_path / "mission/report.html").read_text()
+    assert "speed_limit: 4.5" in told(env, tmp_path, "origin", "mission", "speed_limit")
 
 
 def test_a_node_that_dies_is_told_and_ends_the_mission(

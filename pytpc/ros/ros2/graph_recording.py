@@ -359,6 +359,8 @@ class GraphRecording:
     def _see_event(self, data: bytes) -> None:
         with contextlib.suppress(ValueError):
             event = decode_parameter_event(data)
+            if event.is_of_tpc:
+                return
             now_ns = event.stamp_ns or self._recorder.now_ns()
             for name, value in event.values.items():
                 self._set.append(SetValue(now_ns, f"{event.node.rstrip('/')}/{name}", value))
