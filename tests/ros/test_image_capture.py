@@ -20,8 +20,8 @@ from pytpc.base.paths import cmake_file, log_library, plugin
 from pytpc.build.build import BuildResult, workspace_env
 from pytpc.ingest.reading import read
 from pytpc.recording.faults import unknown_keys
-from pytpc.ros.mission_run import MISSION_DONE, Progress, RecordOptions
 from pytpc.ros.left_processes import GRAPH_WORD
+from pytpc.ros.mission_run import MISSION_DONE, Progress, RecordOptions
 from pytpc.ros.ros1.graph import RosGraph
 from pytpc.ros.ros1.record_mission import run_mission
 from pytpc_evaluation.demo.demo import FIRST, TreatedMission, failures, run_treatment
