@@ -23,8 +23,8 @@ from pathlib import Path
 from figures import figure
 
 from pytpc.build.build import build_workspace, workspace_env
-from pytpc.ros.mission_run import MISSION_DONE, MissionRun, Progress, RecordOptions
 from pytpc.ros.left_processes import GRAPH_WORD
+from pytpc.ros.mission_run import MISSION_DONE, MissionRun, Progress, RecordOptions
 from pytpc.ros.ros1.record_mission import run_mission
 from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE, link_package
 

@@ -35,6 +35,10 @@ from pytpc.workspace.colcon import Bases
 from pytpc.workspace.packages import package_folders, read_manifest
 
 _LISTED = 4
+_NO_WALL_TIME = (
+    "--wall-time is for ROS 1 and changes nothing here; on ROS 2 the launch file gives each node"
+    " its use_sim_time"
+)
 _ONE_LAUNCH = "a launch file is run by itself, with NAME:=VALUE alone; leave out {}"
 _LAUNCH_OF_ROS2 = (".py", ".launch.xml", ".yaml", ".yml")
 __all__ = ["DEFAULT_TOPICS", "MissionRun", "Progress", "RecordOptions"]
@@ -71,6 +75,8 @@ def record_launch(
     """
     if is_of_ros2(workspace, options):
         asked = Stop() if stop is None else stop
+        if use_sim_time is False and options.on_doubt is not None:
+            options.on_doubt(_NO_WALL_TIME)
         return _record_ros2_launch(workspace, options, python=python, stop=asked)
     if options.programs or options.arguments:
         raise RunError(_ONE_LAUNCH.format((*options.programs, "--")[0]))

@@ -19,6 +19,7 @@ from pytpc.python_runtime.config import POLICIES, SINKS
 from pytpc.ros.graphs import nodes_at
 from pytpc.ros.node_status import NodeStatus, SettableNodes, Value, chosen
 from pytpc.ros.ros1 import relay
+from pytpc.ros.ros2.address import is_ros2
 
 _COUNT = click.IntRange(min=0, max=(1 << 31) - 1)
 
@@ -99,9 +100,14 @@ def relay_command(*, ros_arguments: tuple[str, ...]) -> None:
     """Forward reports from /rosout to /threshold_information, as a ROS node, until stopped.
 
     Each report becomes one message TIME,KEY,RESULT,cmp:C,thresh:T,res:R. In a launch file:
-    <node pkg="rosout" type="rosout" name="tpc_relay" launch-prefix="pytpc relay"/>.
+    <node pkg="rosout" type="rosout" name="tpc_relay" launch-prefix="pytpc relay"/>. It is for ROS 1
+    alone: on ROS 2, the sink `topic` needs none.
     """
-    use_graph()
+    if is_ros2(use_graph().master):
+        raise RunError(
+            "relay is for ROS 1; nodes of ROS 2 publish on /threshold_information by themselves,"
+            " and those that report on /rosout do so after: pytpc sink --sink topic"
+        )
     relay.run(ros_arguments, lambda text: say(f"pytpc relay: {plain(text)}"))
 
 

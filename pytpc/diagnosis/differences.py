@@ -57,8 +57,8 @@ class RunValues:
     """A run and the values of its parameters.
 
     ``values`` are those of the parameter server by full name, None if they were not recorded;
-    those that changed while it ran are in the recording. ``places`` says where they were set, by
-    full name. ``build`` is what its nodes were built from; None if that is not known.
+    those that changed while it ran are in the recording, too. ``places`` says where they were set,
+    by full name. ``build`` is what its nodes were built from; None if that is not known.
     """
 
     name: str

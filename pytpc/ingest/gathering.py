@@ -284,6 +284,8 @@ class Gathering:
 
     def add_values(self, event: ParameterEvent, time_ns: int) -> None:
         """Take in what a node's parameters were set to; ``time_ns`` is when it was recorded."""
+        if event.is_of_tpc:
+            return
         for name, value in event.values.items():
             full = f"{event.node.rstrip('/')}/{name}"
             self.values.append(SetValue(event.stamp_ns or time_ns, full, value))

@@ -20,6 +20,11 @@ class ParameterEvent(NamedTuple):
     node: str
     values: dict[str, Value | None]
 
+    @property
+    def is_of_tpc(self) -> bool:
+        """Whether the node is one of TPC: a hidden one with settings, or that of a command."""
+        return self.node.rpartition("/")[2].startswith("_tpc")
+
 
 class _Reader:
     """Reads CDR from front to back."""

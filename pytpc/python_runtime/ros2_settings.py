@@ -30,12 +30,12 @@ class Settings:
         self._runtime = runtime
 
     def begin(self, name: str) -> None:
-        """Apply the entries of the files of parameters for the hidden node of ``name``, once."""
+        """Apply what the command line and its files have for the hidden node of ``name``, once."""
         config = self._runtime.config
-        for path, key, value in _of_files(parameter_files(sys.argv), f"{name}/{NAME}"):
+        for place, key, value in overrides(sys.argv, f"{name}/{NAME}"):
             new, why = changed(config, key, value)
             if new is None:
-                warn(f"{path}: the parameter {key} of {name}/{NAME} is ignored: {why}")
+                warn(f"{place}: the parameter {key} of {name}/{NAME} is ignored: {why}")
             else:
                 config = new
         if not self._runtime.apply(config):
@@ -90,9 +90,12 @@ def changed(config: Config, name: str, value: object) -> tuple[Config | None, st
     return (None, why) if change is None else (config._replace(**change), "")
 
 
-def parameter_files(words: list[str]) -> list[str]:
-    """The files of parameters among the arguments for ROS of a command line."""
-    files = []
+def overrides(words: list[str], full_name: str) -> list[tuple[str, str, object]]:
+    """What a command line has for the hidden node of this name: place, name and value; last wins.
+
+    A rule of ROS names a node without its namespace: ``-p _tpc:sink:=file`` is for all hidden ones.
+    """
+    found: list[tuple[str, str, object]] = []
     is_ros = False
     for word, following in zip(words, [*words[1:], ""]):
         if word == "--ros-args":
@@ -100,24 +103,27 @@ def parameter_files(words: list[str]) -> list[str]:
         elif word == "--":
             is_ros = False
         elif is_ros and word == "--params-file" and following:
-            files.append(following)
-    return files
-
-
-def _of_files(paths: list[str], full_name: str) -> list[tuple[str, str, object]]:
-    """File, name and value of each entry for the node; later ones win."""
-    found: list[tuple[str, str, object]] = []
-    for path in paths:
-        try:
-            import yaml  # noqa: PLC0415
-
-            with open(path, encoding="utf-8") as stream:
-                content = yaml.safe_load(stream)
-        except Exception:
-            # rcl has refused it already, or there is none of these entries.
-            continue
-        found += [(path, key, value) for key, value in entries(content, full_name)]
+            content = _read(following, is_file=True)
+            found += [(following, key, value) for key, value in entries(content, full_name)]
+        elif is_ros and word in ("-p", "--param") and following.startswith(NAME + ":"):
+            key, assigned, text = following[len(NAME) + 1 :].partition(":=")
+            if assigned:
+                found.append((word + " " + following, key, _read(text, is_file=False)))
     return found
+
+
+def _read(source: str, *, is_file: bool) -> object:
+    """A file or a text in YAML; None where that cannot be read."""
+    try:
+        import yaml  # noqa: PLC0415
+
+        if not is_file:
+            return yaml.safe_load(source)
+        with open(source, encoding="utf-8") as stream:
+            return yaml.safe_load(stream)
+    except Exception:
+        # rcl has refused it already, or there is none of these entries.
+        return None
 
 
 def entries(content: object, full_name: str, above: str = "") -> list[tuple[str, object]]:
@@ -139,7 +145,12 @@ def entries(content: object, full_name: str, above: str = "") -> list[tuple[str,
 
 
 def _is_for(pattern: str, full_name: str) -> bool:
-    """Whether a pattern of nodes' names is for a hidden node: ``*`` one part, ``**`` any number."""
+    """Whether a pattern of nodes' names is for a hidden node: ``*`` one part, ``**`` any number.
+
+    Without a namespace it is for all hidden nodes, as in a rule of the command line.
+    """
+    if pattern == f"/{NAME}":
+        return True
     if pattern.rpartition("/")[2] != NAME:
         return False
     parts = {"**": r"(/[^/]+)*", "*": r"/[^/]+"}

@@ -32,7 +32,13 @@ BY_A_NODE = (
 NOT_SEEN = "the command line of its node is not known; is the node on another machine?"
 MISSION_PATIENCE_S = 20.0
 _OF_ROS2 = "ros__parameters"
-_ENV_NAMES = ("ROS_PACKAGE_PATH", "CMAKE_PREFIX_PATH", "ROS_DISTRO", "ROS_ROOT")
+_ENV_NAMES = (
+    "ROS_PACKAGE_PATH",
+    "CMAKE_PREFIX_PATH",
+    "AMENT_PREFIX_PATH",
+    "ROS_DISTRO",
+    "ROS_ROOT",
+)
 
 
 def params_file(mission: Path) -> Path | None:

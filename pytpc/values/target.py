@@ -331,7 +331,10 @@ def plan_addition(
     node = max(below, key=lambda one: len(one.name), default=None)
     path = target.launch if node is None else node.path
     if path is None:
-        raise InputError("the launch file is not known; give that instead of the mission")
+        raise InputError(
+            "the launch file is not known; give that instead of the mission, or for ROS 2 a params"
+            f" file that the node gets: pytpc apply PARAMS.yaml {origin.name} {given} --add"
+        )
     file = source_of(path) or path
     if is_ros2_launch(file):
         raise InputError(

@@ -90,8 +90,10 @@ static void visitAll(const rcl_params_t &All, const std::string &FullName,
     std::string Pattern = All.node_names[I];
     if (Pattern[0] != '/')
       Pattern = "/" + Pattern;
+    // A rule of the command line names a node without its namespace.
+    const bool IsOfAll = Pattern == Last;
     if (Pattern.substr(Pattern.rfind('/')) != Last ||
-        !matches(Pattern, FullName))
+        !(IsOfAll || matches(Pattern, FullName)))
       continue;
     const rcl_node_params_t &Of = All.params[I];
     for (size_t P = 0; P < Of.num_params; ++P)

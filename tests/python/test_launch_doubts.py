@@ -60,6 +60,13 @@ def test_a_node_without_a_program_is_named() -> None:
     )
 
 
+def test_what_launch_of_ros_2_could_not_follow_is_told() -> None:
+    trace = Trace(Path("x.launch.py"), {}, {}, [], {}, unknown=("/p.yaml is no file",))
+    assert list(doubts(trace)) == [
+        "what the launch file sets is not known as a whole: /p.yaml is no file"
+    ]
+
+
 def test_a_launch_file_that_is_not_there_is_looked_for_in_the_workspace(workspace: Path) -> None:
     (workspace / ".tpc/install/setup.bash").write_text("export ROS_PACKAGE_PATH=/none\n")
 

@@ -11,11 +11,11 @@ from ros2_bags import STORE, Ros2Bag
 
 from pytpc.api.live_reports import Reports
 from pytpc.api.missions import convert
-from pytpc.api.record import RecordOptions, record_launch
-from pytpc.base.errors import InputError, RunError, TpcError
+from pytpc.api.record import RecordOptions, is_of_ros2
+from pytpc.base.errors import InputError, TpcError
 from pytpc.diagnosis.results.live import Seen
 from pytpc.ingest.decoders import ROS2
-from pytpc.ingest.parameter_events import TOPIC, TYPE, decode_parameter_event
+from pytpc.ingest.parameter_events import TOPIC, TYPE, ParameterEvent, decode_parameter_event
 from pytpc.ingest.reading import read
 from pytpc.ingest.ros2 import node_of_logger
 from pytpc.recording.mission import ReadName
@@ -177,10 +177,34 @@ def test_without_a_python_with_rclpy_it_is_said_what_to_type(
         values_at("ros2://7")
 
 
-def test_a_launch_file_of_ros2_is_not_started(tmp_path: Path) -> None:
-    options = RecordOptions(tmp_path / "out", launch=Path("robot.launch.py"))
-    with pytest.raises(RunError, match=r"ros2 launch robot\.launch\.py"):
-        record_launch(tmp_path, options)
+@pytest.mark.parametrize(
+    ("asked", "launch", "packages", "expected"),
+    [
+        ("", "robot.launch.py", {}, True),
+        ("1", "robot.launch.py", {}, False),
+        ("", "guard", {"guard": "ament_python", "arm": "catkin"}, True),
+        ("", "guard", {"guard": "catkin", "arm": "ament_cmake"}, False),
+        # Nobody has this package; the workspace has one ROS alone.
+        ("", "gard", {"guard": "ament_python"}, True),
+        ("", "gard", {"guard": "catkin"}, False),
+    ],
+)
+def test_the_ros_of_a_mission(tmp_path, monkeypatch, asked, launch, packages, expected):  # noqa: PLR0917
+    monkeypatch.setenv("TPC_ROS", asked)
+    for name, kind in packages.items():
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "package.xml").write_text(
+            f"<package format='3'><name>{name}</name><version>0.1.0</version>"
+            "<description>d</description><maintainer email='a@b.org'>a</maintainer>"
+            f"<license>x</license><export><build_type>{kind}</build_type></export></package>"
+        )
+    options = RecordOptions(tmp_path / "out", launch=Path(launch), package=launch)
+    assert is_of_ros2(tmp_path, options) == expected
+
+
+def test_the_parameters_of_hidden_nodes_of_tpc_are_no_values_of_the_robot() -> None:
+    nodes = ("/robot1/guard", "/robot1/guard/_tpc", "/_tpc_agent_7")
+    assert [ParameterEvent(0, one, {}).is_of_tpc for one in nodes] == [False, True, True]
 
 
 def test_live_reports_of_ros2_are_of_the_node_that_the_batch_names() -> None:

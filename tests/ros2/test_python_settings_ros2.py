@@ -72,9 +72,12 @@ rclpy.shutdown()
         "/**: {ros__parameters: {sink: 7, period: 50.0}}\n"
         "/robot1/tuned: {ros__parameters: {policy: 3}}\n"
         "/**/_tpc: {ros__parameters: {sink: topic, period: 5.0}}\n"
-        "/robot1/tuned/_tpc: {ros__parameters: {period: 3.0, site_cap: 8}}\n"
+        "/robot1/tuned/_tpc: {ros__parameters: {period: 3.0, site_cap: 9}}\n"
     )
-    process = program.start(str(stop), "--ros-args", "--params-file", str(params), TPC_SINK="off")
+    words = ["--ros-args", "--params-file", str(params)]
+    # A rule can name a node without its namespace alone; `policy` is for the program.
+    words += ["-p", "_tpc:site_cap:=8", "-p", "policy:=4", "-p", "tuned:period:=4.0"]
+    process = program.start(str(stop), *words, TPC_SINK="off")
     try:
         said = run_python(setter, domain)
         # The eight reports of this second may be used up: the next one has its own.

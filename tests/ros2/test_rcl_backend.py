@@ -168,9 +168,11 @@ def test_the_command_line_replaces_the_environment(
         "/robot1/other/_tpc: {ros__parameters: {period: 0.7}}\n"
         "/**: {ros__parameters: {process_cap: 3}}\n"
     )
-    node = start("--ros-args", "--params-file", str(file))
+    # A rule can name a node without its namespace alone; `process_cap` is for the program.
+    rules = ("-p", "_tpc:process_cap:=8", "-p", "process_cap:=4", "-p", "guard:site_cap:=5")
+    node = start("--ros-args", "--params-file", str(file), *rules)
     node.say("report 1 0")
-    wanted = ["off", "edges", 0.5, 0, 0]
+    wanted = ["off", "edges", 0.5, 0, 8]
     names = ("sink", "policy", "period", "site_cap", "process_cap")
     assert peer.ask("get", SETTINGS, *names) == wanted
     assert node.errors() == (

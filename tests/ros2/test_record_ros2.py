@@ -195,6 +195,12 @@ def test_marks_of_two_observers_are_ranked_by(env: dict[str, str], tmp_path: Pat
     assert "limits.speed" in told(env, tmp_path, "rank", "mission")
 
 
+def test_relay_says_what_takes_its_place(env: dict[str, str], tmp_path: Path) -> None:
+    said = told(env, tmp_path, "relay", status=1)
+    assert said.endswith("do so after: pytpc sink --sink topic\n")
+    assert len(said.splitlines()) == 1
+
+
 def test_a_killed_agent_loses_nothing_of_what_was_recorded(
     env: dict[str, str], tmp_path: Path
 ) -> None:

@@ -17,12 +17,13 @@ import pytest
 from pytpc.base.paths import project_root
 from pytpc.build.build import build_workspace
 from pytpc.ingest.reading import read
+from pytpc.recording.marks import Mark, write_marks
 from pytpc.values.origins import read_origins
 from ros2_graph import PATIENCE_S, PYTHON, ros2_env
 from ros2_workspace import make_ros2_workspace
 from terminals import Terminal
 
-# It compares for as long as it runs, or dies at a speed.
+# Every 3 s it has the speed 6 for half a second, else 1, until it ends or dies at a step.
 NODE = """import rclpy
 from rclpy.node import Node
 from std_msgs.msg import Float64
@@ -35,6 +36,7 @@ class Guard(Node):
         super().__init__("guard", namespace="/robot1")
         self.limit = self.declare_parameter("speed_limit", 6.5).value
         self.dies_at = self.declare_parameter("dies_at", -1).value
+        self.ends_at = self.declare_parameter("ends_at", -1).value
         self.publisher = self.create_publisher(Float64, "stop", 10)
         self.step = 0
         self.create_timer(0.02, self.turn)
@@ -43,7 +45,9 @@ class Guard(Node):
         self.step += 1
         if self.step == self.dies_at:
             raise RuntimeError("the wheel is off")
-        if is_too_fast(float(self.step % 10), self.limit):
+        if self.step == self.ends_at:
+            raise SystemExit
+        if is_too_fast(6.0 if self.step % 150 > 125 else 1.0, self.limit):
             self.publisher.publish(Float64(data=1.0))
 
 
@@ -233,7 +237,36 @@ def test_nodes_started_by_hand_tell_their_params_file_and_rules(
     assert "speed_limit: 5.0\n" in (tmp_path / "limits.yaml").read_text()
 
 
-def test_a_marked_run_ends_with_the_verdict_and_the_command_for_the_params_file(
+def marked(mission: Path) -> None:
+    """Mark the moment behind each change to a speed that is too high, as a file beside it."""
+    events = read(mission).events
+    fast = (events.thresh == 4.5) & events.result
+    times = [int(one) for one in events.time_ns[fast]]
+    begins = [now for before, now in zip([0, *times], times, strict=False) if now - before > 10**9]
+    assert begins
+    marks = [Mark(time_ns + 200_000_000, "I", "ana") for time_ns in begins]
+    write_marks(marks, mission / "marks.csv")
+
+
+def test_the_verdict_beside_a_good_run_names_the_line_and_the_command(
+    workspace: Path, env: dict[str, str], tmp_path: Path
+) -> None:
+    params = workspace / "src/guard/config/guard.yaml"
+    until, env = ["-p", "ends_at:=500"], {**env, "TPC_POLICY": "every"}
+    for mission, more in (("good", []), ("bad", ["--params-file", params])):
+        words = ["guard", "speed_guard", "-o", mission, "--", "--ros-args", *more, *until]
+        assert "(ended)" in told(env, tmp_path, "record", workspace, *words)
+    marked(tmp_path / "bad")
+    assert "blame ~speed_limit" in told(env, tmp_path, "rank", "bad", "--reference", "good")
+    differing = told(env, tmp_path, "diff", "good", "bad", "--json")
+    assert f"{params}:3" in differing
+    told(env, tmp_path, "report", "bad", "--reference", "good", "-o", "page.html")
+    page = (tmp_path / "page.html").read_text()
+    assert f"{params.name}:3" in page
+    assert f"pytpc apply {tmp_path}/bad {LIMIT} 6.5" in page
+
+
+def test_a_marked_run_ends_with_the_verdict_and_the_page(
     workspace: Path, env: dict[str, str], tmp_path: Path
 ) -> None:
     params = workspace / "src/guard/config/guard.yaml"
@@ -248,7 +281,7 @@ def test_a_marked_run_ends_with_the_verdict_and_the_command_for_the_params_file(
         said = terminal.text
     assert "speed_limit" in said
     assert (tmp_path / "mission/report.html").is_file()
-    assert f"{params.name}:3" in told(env, tmp_path, "rank", "mission", "--json")
+    assert "speed_limit: 4.5" in told(env, tmp_path, "origin", "mission", "speed_limit")
 
 
 def test_a_node_that_dies_is_told_and_ends_the_mission(
@@ -307,7 +340,7 @@ def test_a_launch_file_runs_and_tells_the_line_of_each_value(
     mission = tmp_path / "mission"
     recording = read(mission)
     assert recording.events.nodes == ("/robot1/guard",)
-    assert {5.5, 300.0} == set(recording.events.thresh.tolist())
+    assert {5.5, 300.0} <= set(recording.events.thresh.tolist())
     origins = read_origins(mission)
     limit, dies = origins[LIMIT], origins["/robot1/guard/dies_at"]
     source = workspace / "src/guard/launch/guard.launch.py"

@@ -22,6 +22,7 @@ from pytpc.values.trace import Trace
 
 _PROC = Path("/proc")
 _ROS_ARGS = b"--ros-args"
+_SEVERAL = "several processes may be that of its node, and set it in other places"
 
 
 class CommandLines:
@@ -122,13 +123,13 @@ class CommandLines:
 
 
 def _agreed(found: list[dict[str, Origin]]) -> dict[str, Origin]:
-    """Those that are the same in all processes that may be the node's."""
-    first, *others = found
-    return {
-        name: origin
-        for name, origin in first.items()
-        if all(_place(one.get(name)) == _place(origin) for one in others)
-    }
+    """The origins, not known where the processes that may be the node's do not agree."""
+    agreed = {}
+    for name, origin in {name: one for each in found for name, one in each.items()}.items():
+        is_same = all(_place(each.get(name)) == _place(origin) for each in found)
+        unknown = Origin(name, "unknown", origin.value, None, None, "", note=_SEVERAL)
+        agreed[name] = origin if is_same else unknown
+    return agreed
 
 
 def _place(origin: Origin | None) -> object:

@@ -343,6 +343,8 @@ class GraphRecording:
     def _see_event(self, data: bytes) -> None:
         with contextlib.suppress(ValueError):
             event = decode_parameter_event(data)
+            if event.is_of_tpc:
+                return
             self._values.see_event(event.node)
             now_ns = event.stamp_ns or self._recorder.now_ns()
             self._is_simulated |= event.values.get(_SIM_TIME) is True
