@@ -2,6 +2,7 @@
 #include "instrument/InstrumentReads.h"
 
 #include "instrument/Instances.h"
+#include "support/Names.h"
 
 #include "llvm/BinaryFormat/Dwarf.h"
 #include "llvm/IR/DebugInfoMetadata.h"
@@ -33,6 +34,12 @@ static std::string nodeNameOf(StringRef Method) {
   return Scopes.size() < 2 ? "" : Name + "24get_fully_qualified_nameEv";
 }
 
+/// The type of that method: it returns a C string.
+static FunctionType *nodeNameType(LLVMContext &Ctx) {
+  Type *Pointer = PointerType::getUnqual(Ctx);
+  return FunctionType::get(Pointer, {Pointer}, false);
+}
+
 /// The offset in bytes of the field \p Name in the class that \p Method is a
 /// method of; none if the debug information does not have it.
 static std::optional<uint64_t> offsetOf(const Function &Method,
@@ -51,6 +58,19 @@ static std::optional<uint64_t> offsetOf(const Function &Method,
   return std::nullopt;
 }
 
+/// Whether argument \p Number of \p F is a C string; none if it is neither that
+/// nor a std::string as the log library has it.
+static std::optional<bool> isText(const Function &F, unsigned Number) {
+  const SmallVector<std::string, 4> Types = parameterTypes(F);
+  StringRef Type = Number < Types.size() ? Types[Number] : StringRef();
+  if (Type == "char const*")
+    return true;
+  if (Type.starts_with("std::__cxx11::basic_string<char,") &&
+      !Type.ends_with("*"))
+    return false;
+  return std::nullopt;
+}
+
 std::optional<NamedRead> planName(const ParameterRead &Read,
                                   const AnalysedModule &Analysed) {
   const Rule &Row = *Read.Row;
@@ -61,8 +81,8 @@ std::optional<NamedRead> planName(const ParameterRead &Read,
   if (!Callee)
     return std::nullopt;
   NamedRead R{
-      Read.Key,  Call, objectOf(*Call, Row), 0, argument(*Call, Row, Row.Name),
-      Read.Field};
+      Read.Key,   Call, objectOf(*Call, Row), 0, argument(*Call, Row, Row.Name),
+      Read.Field, false};
   if (Argument *Object = objectOf(*Call->getFunction())) {
     R.Object = Object;
     R.ObjectSize = classOf(*Call->getFunction())->getSizeInBits() / CHAR_BIT;
@@ -74,14 +94,21 @@ std::optional<NamedRead> planName(const ParameterRead &Read,
     R.HandleOffset = *Offset;
     return R;
   }
-  if (Row.Resolve == "node")
+  if (Row.Resolve == "node") {
     R.NodeName = nodeNameOf(Row.Function);
+    const Function *NameOf = Call->getModule()->getFunction(R.NodeName);
+    if (NameOf && NameOf->getFunctionType() != nodeNameType(Call->getContext()))
+      return std::nullopt;
+  }
   if (Row.Resolve == "global")
     R.Handle = nullptr;
   else if (!R.Handle)
     return std::nullopt;
-  if (!R.Name || !R.Name->getType()->isPointerTy())
+  std::optional<bool> IsText =
+      R.Name ? isText(*Callee, *Row.Name) : std::nullopt;
+  if (!IsText || !R.Name->getType()->isPointerTy())
     return std::nullopt;
+  R.IsText = *IsText;
   return R;
 }
 
@@ -160,8 +187,7 @@ static Function *nodeReportFunction(Module &M, StringRef NodeName) {
     F->addParamAttr(3, Attribute::ZExt);
     F->setDoesNotThrow();
   }
-  FunctionCallee NameOf =
-      Weak(NodeName, FunctionType::get(Pointer, {Pointer}, false));
+  FunctionCallee NameOf = Weak(NodeName, nodeNameType(Ctx));
   auto *F = Function::Create(T, GlobalValue::InternalLinkage, Name, M);
   auto *Look = BasicBlock::Create(Ctx, "", F);
   auto *Report = BasicBlock::Create(Ctx, "", F);
@@ -213,7 +239,7 @@ SmallVector<Instruction *, 0> insertNames(Module &M,
     }
     Value *Name = R.Name ? R.Name : textOf(M, R.Text, "tpc.name");
     SmallVector<Value *, 6> Arguments{textOf(M, R.Key, "tpc.key"), Handle, Name,
-                                      B.getInt1(!R.Name)};
+                                      B.getInt1(!R.Name || R.IsText)};
     Value *Object = R.Object;
     if (!Object && !IsResolved(R))
       Object = Constant::getNullValue(B.getPtrTy());
