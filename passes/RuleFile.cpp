@@ -55,6 +55,7 @@ private:
               std::vector<std::string> &Out);
   Error truth(const json::Value &V, StringRef Place, bool &Out);
   Error factor(const json::Value &V, StringRef Place, double &Out);
+  Error meaning(const Rule &R, StringRef Place);
   Error numbers(const json::Value &V, StringRef Place,
                 std::vector<unsigned> &Out);
 
@@ -251,6 +252,21 @@ Error Reader::field(StringRef Key, const json::Value &V, StringRef Place,
   return Error::success();
 }
 
+/// Checks what no single key of the row \p R shows.
+Error Reader::meaning(const Rule &R, StringRef Place) {
+  static constexpr StringLiteral Resolving[] = {"this", "global", "node"};
+  if (R.Kind == Rule::Read && !R.Resolve.empty() &&
+      !is_contained(Resolving, R.Resolve))
+    return wrong((Place + "/resolve").str(),
+                 "must be \"this\", \"global\" or \"node\"");
+  if (R.Slot.has_value() == R.Symbol.empty())
+    return wrong(Place, "must have both \"slot\" and \"symbol\", or neither");
+  // The program reads an integer of 64 bits there.
+  if (R.Nanoseconds && *R.Nanoseconds % 8)
+    return wrong((Place + "/nanoseconds").str(), "must be a multiple of 8");
+  return Error::success();
+}
+
 Error Reader::row(const json::Value &V, const Section &In, StringRef Place,
                   RuleFile &Out) {
   const json::Object *Row = V.getAsObject();
@@ -279,6 +295,8 @@ Error Reader::row(const json::Value &V, const Section &In, StringRef Place,
   for (StringRef Key : In.Required)
     if (!Row->get(Key))
       return wrong(Place, "has no \"" + Key + "\"");
+  if (Error E = meaning(R, Place))
+    return E;
   if (belongs(Profiles))
     Out.Rows.push_back(std::move(R));
   return Error::success();

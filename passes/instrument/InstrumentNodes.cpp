@@ -31,6 +31,17 @@ std::string nodeNameOf(StringRef Class) {
   return Scopes.empty() ? "" : "_ZNK" + Scopes + "24get_fully_qualified_nameEv";
 }
 
+/// The type of a method that returns a C string.
+static FunctionType *textMethod(LLVMContext &Ctx) {
+  Type *Pointer = PointerType::getUnqual(Ctx);
+  return FunctionType::get(Pointer, {Pointer}, false);
+}
+
+bool givesText(const Module &M, StringRef NodeName) {
+  const Function *F = M.getFunction(NodeName);
+  return !F || F->getFunctionType() == textMethod(M.getContext());
+}
+
 FunctionCallee weakFunction(Module &M, StringRef Name, FunctionType *T) {
   FunctionCallee Callee = M.getOrInsertFunction(Name, T);
   if (auto *F = dyn_cast<Function>(Callee.getCallee());
@@ -129,8 +140,7 @@ static Function *reportFunction(Module &M, StringRef NodeName) {
   FunctionCallee Log = weakFunction(M, LogName, T);
   if (auto *F = dyn_cast<Function>(Log.getCallee()))
     F->setDoesNotThrow();
-  FunctionCallee NameOf =
-      weakFunction(M, NodeName, FunctionType::get(Pointer, {Pointer}, false));
+  FunctionCallee NameOf = weakFunction(M, NodeName, textMethod(Ctx));
   auto *F = Function::Create(T, GlobalValue::InternalLinkage, Name, M);
   auto *Look = BasicBlock::Create(Ctx, "", F);
   auto *Report = BasicBlock::Create(Ctx, "", F);
@@ -153,7 +163,7 @@ SmallVector<Instruction *, 0> insertNodes(Module &M, const Rules &Tables) {
   for (const std::string &Class : Tables.nodeClasses())
     for (const MadeNode &Made : findNodes(M, Class)) {
       Instruction *Before = insertionPointAfter(*Made.By);
-      if (!Before || Made.NodeName.empty())
+      if (!Before || Made.NodeName.empty() || !givesText(M, Made.NodeName))
         continue;
       IRBuilder<> B(Before);
       B.SetCurrentDebugLocation(Made.By->getDebugLoc());

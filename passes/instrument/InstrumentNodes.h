@@ -28,6 +28,9 @@ class Rules;
 /// its full name; empty if the class is in no namespace.
 std::string nodeNameOf(llvm::StringRef Class);
 
+/// False if \p M has a method \p NodeName that does not return a C string.
+bool givesText(const llvm::Module &M, llvm::StringRef NodeName);
+
 /// A function that the program need not have: its declaration is weak, unless
 /// the program uses it.
 llvm::FunctionCallee weakFunction(llvm::Module &M, llvm::StringRef Name,

@@ -3,6 +3,7 @@
 
 #include "instrument/Instances.h"
 #include "instrument/InstrumentNodes.h"
+#include "support/Names.h"
 
 #include "llvm/BinaryFormat/Dwarf.h"
 #include "llvm/IR/DebugInfoMetadata.h"
@@ -41,6 +42,19 @@ static std::optional<uint64_t> offsetOf(const Function &Method,
   return std::nullopt;
 }
 
+/// Whether argument \p Number of \p F is a C string; none if it is neither that
+/// nor a std::string as the log library has it.
+static std::optional<bool> isText(const Function &F, unsigned Number) {
+  const SmallVector<std::string, 4> Types = parameterTypes(F);
+  StringRef Type = Number < Types.size() ? Types[Number] : StringRef();
+  if (Type == "char const*")
+    return true;
+  if (Type.starts_with("std::__cxx11::basic_string<char,") &&
+      !Type.ends_with("*"))
+    return false;
+  return std::nullopt;
+}
+
 std::optional<NamedRead> planName(const ParameterRead &Read,
                                   const AnalysedModule &Analysed) {
   const Rule &Row = *Read.Row;
@@ -50,8 +64,8 @@ std::optional<NamedRead> planName(const ParameterRead &Read,
   if (!Call)
     return std::nullopt;
   NamedRead R{
-      Read.Key,  Call, objectOf(*Call, Row), 0, argument(*Call, Row, Row.Name),
-      Read.Field};
+      Read.Key,   Call, objectOf(*Call, Row), 0, argument(*Call, Row, Row.Name),
+      Read.Field, false};
   if (Argument *Object = objectOf(*Call->getFunction())) {
     R.Object = Object;
     R.ObjectSize = classOf(*Call->getFunction())->getSizeInBits() / CHAR_BIT;
@@ -65,14 +79,20 @@ std::optional<NamedRead> planName(const ParameterRead &Read,
     R.HandleOffset = *Offset;
     return R;
   }
-  if (Row.Resolve == "node")
+  if (Row.Resolve == "node") {
     R.NodeName = nodeNameOf(StringRef(Row.Function).rsplit("::").first);
+    if (!givesText(*Call->getModule(), R.NodeName))
+      return std::nullopt;
+  }
   if (Row.Resolve == "global")
     R.Handle = nullptr;
   else if (!R.Handle)
     return std::nullopt;
-  if (!R.Name || !R.Name->getType()->isPointerTy())
+  std::optional<bool> IsText =
+      R.Name ? isText(*Callee, *Row.Name) : std::nullopt;
+  if (!IsText || !R.Name->getType()->isPointerTy())
     return std::nullopt;
+  R.IsText = *IsText;
   return R;
 }
 
@@ -197,7 +217,7 @@ SmallVector<Instruction *, 0> insertNames(Module &M,
     }
     Value *Name = R.Name ? R.Name : textOf(M, R.Text, "tpc.name");
     SmallVector<Value *, 6> Arguments{textOf(M, R.Key, "tpc.key"), Handle, Name,
-                                      B.getInt1(!R.Name)};
+                                      B.getInt1(!R.Name || R.IsText)};
     Value *Object = R.Object;
     if (!Object && !IsResolved(R))
       Object = Constant::getNullValue(B.getPtrTy());

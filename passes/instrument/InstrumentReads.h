@@ -39,6 +39,7 @@ struct NamedRead {
   uint64_t HandleOffset = 0;
   llvm::Value *Name; ///< null: the name is Text
   std::string Text;
+  bool IsText; ///< Name, if there is one, is a C string and no std::string
   llvm::Value *Object = nullptr; ///< which the call is in a method of
   uint64_t ObjectSize = 0;       ///< in bytes
   /// The mangled name of the method of Handle, a node of rclcpp, that returns

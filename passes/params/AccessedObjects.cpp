@@ -134,9 +134,11 @@ private:
                        unsigned Depth = 0);
   bool addReturned(const Function &F, SmallSetVector<unsigned, 2> &Out) const;
   SmallVector<unsigned, 2> storedAt(const Value *Object);
+  std::set<std::string> namesGiven(const Argument &Given);
   void addValues(unsigned Read, StringRef Type, ArrayRef<Value *> Values);
 
   const RuleMatches &Rules;
+  const CallGraphResult &Calls;
   PointsTo &Pointers;
   Texts &Known;
   std::vector<ParameterRead> &Reads;
@@ -155,6 +157,7 @@ private:
 ObjectFinder::ObjectFinder(Module &M, ModuleAnalysisManager &AM, Texts &Known,
                            std::vector<ParameterRead> &Reads)
     : Rules(AM.getResult<RuleAnalysis>(M)),
+      Calls(AM.getResult<SimpleCallGraph>(M)),
       Pointers(AM.getResult<PointsToAnalysis>(M)), Known(Known), Reads(Reads),
       Sources(AM.getResult<OptionsAnalysis>(M)) {
   forEachCall(M, Rules, Rule::Accessor, [&](CallBase &Call, const Rule &Row) {
@@ -369,6 +372,36 @@ SmallVector<unsigned, 2> ObjectFinder::storedAt(const Value *Object) {
   return Found;
 }
 
+/// The names of the objects that the program's own functions hand to \p Given,
+/// and of those that its function is called back with.
+std::set<std::string> ObjectFinder::namesGiven(const Argument &Given) {
+  std::set<std::string> Found;
+  SmallSetVector<const Argument *, 4> Work;
+  Work.insert(&Given);
+  for (unsigned N = 0; N < Work.size(); ++N) {
+    const Function &F = *Work[N]->getParent();
+    const unsigned Number = Work[N]->getArgNo();
+    if (auto Called = CalledFor.find(&F); Called != CalledFor.end())
+      Found.insert(Called->second);
+    for (const CallBase *Call : Calls.callers(&F)) {
+      if (!Sources.has(*Call->getFunction()) || Number >= Call->arg_size())
+        continue;
+      const Value *Object = Call->getArgOperand(Number);
+      std::set<std::string> Names = namesTested(*Call, Object);
+      Found.insert(Names.begin(), Names.end());
+      if (!Names.empty())
+        continue;
+      if (const auto *Further = dyn_cast<Argument>(Object))
+        Work.insert(Further);
+      else
+        Found.insert(DynamicName);
+    }
+  }
+  if (Found.empty())
+    Found.insert(DynamicName);
+  return Found;
+}
+
 void ObjectFinder::addValues(unsigned Number, StringRef Type,
                              ArrayRef<Value *> Values) {
   ParameterRead &Read = Reads[Number];
@@ -408,9 +441,10 @@ void ObjectFinder::run() {
       addValues(Number, Type, Values);
     if (!From.empty())
       continue;
-    auto Called = isa<Argument>(Object) ? CalledFor.find(A.Call->getFunction())
-                                        : CalledFor.end();
-    AddRead(Called == CalledFor.end() ? DynamicName : Called->second);
+    if (const auto *Given = dyn_cast<Argument>(Object))
+      for_each(namesGiven(*Given), AddRead);
+    else
+      AddRead(DynamicName);
   }
 }
 

@@ -185,7 +185,8 @@ std::string resultType(const Function &F) {
   if (!Demangler.partialDemangle(Name.c_str()) && Demangler.isFunction()) {
     Text = taken(Demangler.getFunctionReturnType(nullptr, nullptr));
     // If the result type is deduced, the template argument tells it.
-    if (StringRef(Text).contains("auto"))
+    if (std::string Plain = plainType(Text);
+        Plain == "auto" || Plain == "decltype(auto)")
       Text = functionArgument(F);
   }
   const Type *T = F.getReturnType();

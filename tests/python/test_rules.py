@@ -93,6 +93,15 @@ def test_the_example_in_the_documentation_is_right(tmp_path: Path) -> None:
         ('{"exposing": [{"function": "f", "topic": -1}]}', ": /exposing/0/topic: "),
         ('{"reads": [{"function": "f", "name": 0}]}', ": /reads/0: "),
         ('{"reads": [{"function": "f", "name": 0, "value": "x"}]}', ": /reads/0/value: "),
+        (
+            '{"reads": [{"function": "f", "name": 0, "value": 1, "resolve": "x"}]}',
+            ": /reads/0/resolve: ",
+        ),
+        ('{"exposing": [{"function": "f", "slot": 3}]}', ": /exposing/0: "),
+        (
+            '{"held": [{"function": "f", "relation": "<", "nanoseconds": 12}]}',
+            ": /held/0/nanoseconds: ",
+        ),
         ('{"handles": [{"function": "f", "parts": [{}], "to": "this"}]}', ": /handles/0/parts/0: "),
         ('{"opaque": [""]}', ": /opaque/0: "),
         ('{"schema": 2}', ": /schema: "),
