@@ -42,10 +42,10 @@ static std::optional<uint64_t> offsetOf(const Function &Method,
   return std::nullopt;
 }
 
-/// Whether argument \p Number of \p F is a C string; none if it is neither that
-/// nor a std::string as the log library has it.
-static std::optional<bool> isText(const Function &F, unsigned Number) {
-  const SmallVector<std::string, 4> Types = parameterTypes(F);
+/// Whether argument \p Number of the function \p Mangled is a C string; none if
+/// it is neither that nor a std::string as the log library has it.
+static std::optional<bool> isText(StringRef Mangled, unsigned Number) {
+  const SmallVector<std::string, 4> Types = parameterTypes(Mangled);
   StringRef Type = Number < Types.size() ? Types[Number] : StringRef();
   if (Type == "char const*")
     return true;
@@ -88,8 +88,10 @@ std::optional<NamedRead> planName(const ParameterRead &Read,
     R.Handle = nullptr;
   else if (!R.Handle)
     return std::nullopt;
+  const Function *Callee = Call->getCalledFunction();
+  const StringRef Mangled = Callee ? Callee->getName() : StringRef(Row.Symbol);
   std::optional<bool> IsText =
-      R.Name ? isText(*Callee, *Row.Name) : std::nullopt;
+      R.Name ? isText(Mangled, *Row.Name) : std::nullopt;
   if (!IsText || !R.Name->getType()->isPointerTy())
     return std::nullopt;
   R.IsText = *IsText;

@@ -112,8 +112,12 @@ std::string functionNameFor(const DILocation &Loc) {
 }
 
 SmallVector<std::string, 4> parameterTypes(const Function &F) {
+  return parameterTypes(F.getName());
+}
+
+SmallVector<std::string, 4> parameterTypes(StringRef Mangled) {
   ItaniumPartialDemangler Demangler;
-  std::string Name = F.getName().str();
+  std::string Name = Mangled.str();
   if (Demangler.partialDemangle(Name.c_str()) || !Demangler.isFunction())
     return {};
   std::string All = taken(Demangler.getFunctionParameters(nullptr, nullptr));

@@ -43,7 +43,8 @@ std::string functionName(const llvm::Function &F);
 /// instances of a template and after inlining.
 std::string functionNameFor(const llvm::DILocation &Loc);
 
-/// The parameter types of \p F as written, from its demangled name.
+/// The parameter types of a function as written, from its mangled name.
+llvm::SmallVector<std::string, 4> parameterTypes(llvm::StringRef Mangled);
 llvm::SmallVector<std::string, 4> parameterTypes(const llvm::Function &F);
 
 /// \p Type, as parameterTypes returns it, without const, & and template
