@@ -7,6 +7,7 @@ import os
 import queue
 import threading
 import time
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -61,6 +62,8 @@ _POLL_S = 0.05
 _HISTORY_S = 3.0
 _LOOK_NS = 2 * 10**9
 _VALUE_S = 2.0
+_LAST_VALUES_S = 6.0
+_TRIES = 5
 _QUIET_S = 10.0
 NO_COMMAND_LINES = "no process of this machine has the nodes, and no launch file was given"
 _SIM_TIME = "use_sim_time"
@@ -161,7 +164,9 @@ class LaunchReading(threading.Thread):
 
 
 class _Values(threading.Thread):
-    """Asks each node once for its parameters; ``found`` has the events of those that answered.
+    """Asks each node for its parameters until it answers, a few times at most.
+
+    ``found`` has the events of those that answered.
 
     A thread of its own: a node that hangs is given up after seconds.
     """
@@ -173,6 +178,7 @@ class _Values(threading.Thread):
         self._agent = agent
         self._nodes: queue.SimpleQueue[str | None] = queue.SimpleQueue()
         self._asked: set[str] = set()
+        self._refused: Counter[str] = Counter()
 
     def see(self, nodes: Sequence[str]) -> None:
         """Ask those that are new; one that comes again is another process."""
@@ -186,9 +192,13 @@ class _Values(threading.Thread):
         while (name := self._nodes.get()) is not None:
             # Its process may not live long.
             self._command_lines.look()
-            # A node may have no services of parameters.
-            with contextlib.suppress(RunError):
+            try:
                 self.found.put(self._agent.values(name, _VALUE_S))
+            except RunError:
+                # It has no services of parameters, or is busy with its start.
+                self._refused[name] += 1
+                if name in self._asked and self._refused[name] < _TRIES:
+                    self._nodes.put(name)
 
     def close(self, patience_s: float) -> None:
         """Ask no more."""
@@ -300,7 +310,7 @@ class GraphRecording:
         fault = self._agent.fault
         try:
             try:
-                self._values.close(0.1 if hurry or fault else _VALUE_S)
+                self._values.close(0.1 if hurry or fault else _LAST_VALUES_S)
                 if not fault:
                     with contextlib.suppress(RunError):
                         self._agent.drain()
