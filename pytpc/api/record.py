@@ -176,17 +176,19 @@ def record_ros2(
     """
     with _announced(options, None, options.static) as told:
         known = os.environ if env is None else env
-        return record_ros2_graph(told, stop, env, _launch_env(options, known))
+        return record_ros2_graph(told, stop, env, _launch_env(options, known, is_ros2=True))
 
 
-def _launch_env(options: RecordOptions, env: Mapping[str, str]) -> Mapping[str, str]:
+def _launch_env(
+    options: RecordOptions, env: Mapping[str, str], *, is_ros2: bool = False
+) -> Mapping[str, str]:
     """The environment in which the launch file of a running robot is read."""
     static = options.static
     if options.launch is None or static is None or options.is_static_guessed:
         return env
     workspace = static if static.is_dir() else static.parent.parent
     try:
-        return with_callers(nodes_env(workspace), env)
+        return nodes_env(workspace, env) if is_ros2 else with_callers(nodes_env(workspace), env)
     except TpcError:
         # A static.json alone.
         return env

@@ -185,8 +185,8 @@ def test_without_a_python_with_rclpy_it_is_said_what_to_type(
         ("", "guard", {"guard": "ament_python", "arm": "catkin"}, True),
         ("", "guard", {"guard": "catkin", "arm": "ament_cmake"}, False),
         # Nobody has this package; the workspace has one ROS alone.
-        ("", "gard", {"guard": "ament_python"}, True),
-        ("", "gard", {"guard": "catkin"}, False),
+        ("", "sentry", {"guard": "ament_python"}, True),
+        ("", "sentry", {"guard": "catkin"}, False),
     ],
 )
 def test_the_ros_of_a_mission(tmp_path, monkeypatch, asked, launch, packages, expected):  # noqa: PLR0917

@@ -220,9 +220,9 @@ def test_nodes_started_by_hand_tell_their_params_file_and_rules(
         # The name of the node is in its code alone.
         with started(env, tmp_path, "run", script, *words) as node:
             wait_for(process, SOME_REPORTS)
+            interrupted(process)
             node.send_signal(signal.SIGINT)
             node.wait(PATIENCE_S)
-        interrupted(process)
     origins = read_origins(tmp_path / "mission")
     limit = origins[LIMIT]
     assert (limit.kind, limit.path, limit.lineno) == ("yaml", tmp_path / "limits.yaml", 3)
@@ -317,8 +317,11 @@ def test_wrong_words_are_one_line_with_what_to_type(
     workspace: Path, env: dict[str, str], tmp_path: Path
 ) -> None:
     for words, error in (
-        (["guard", "speed_gard"], "no launch file or executable speed_gard; did you mean speed_g"),
-        (["gard", "speed_guard"], "no package gard in the workspace"),
+        (
+            ["guard", "speed_guards"],
+            "no launch file or executable speed_guards; did you mean speed_g",
+        ),
+        (["sentry", "speed_guard"], "no package sentry in the workspace"),
         (["guard", "speed_guard", "x:=1"], "give a parameter with -- --ros-args -p"),
         (["guard", "guard.launch.py", "--", "-p"], "a launch file is run by itself"),
         (["guard", "speed_guard", "no/driver"], "no package no in the workspace"),
@@ -370,3 +373,22 @@ def test_a_launch_file_that_cannot_be_run_says_why(
     said = told(launch_env, tmp_path, "record", workspace, "bad.launch.py", status=1)
     assert "no way" in said
     assert "Traceback" not in said
+
+
+def test_the_launch_file_of_a_running_robot_is_read(
+    workspace: Path, launch_env: dict[str, str], tmp_path: Path
+) -> None:
+    source = workspace / "src/guard/launch/guard.launch.py"
+    script = workspace / ".tpc/install/guard/lib/guard/speed_guard"
+    words = ["--launch", source, "--static", workspace, "-o", "mission"]
+    with started(launch_env, tmp_path, "record", *words) as process:
+        wait_for(process, "press Ctrl-C to stop")
+        # As launch would start it.
+        rules = ["-r", "__node:=guard", "-r", "__ns:=/robot1", "-p", "speed_limit:=5.5"]
+        with started(launch_env, tmp_path, "run", script, "--ros-args", *rules) as node:
+            wait_for(process, SOME_REPORTS)
+            interrupted(process)
+            node.send_signal(signal.SIGINT)
+            node.wait(PATIENCE_S)
+    limit = read_origins(tmp_path / "mission")[LIMIT]
+    assert (limit.kind, limit.path, limit.lineno) == ("launch", source, 13)
