@@ -70,7 +70,7 @@ private:
   TopicStore Store;
   int64_t OldestAt = 0; ///< since when something is waiting
 
-  std::atomic<size_t> Subscribed{0}; ///< how many listen
+  std::atomic<size_t> Subscribed{0};  ///< how many listen
   std::atomic<bool> Something{false}; ///< waits
 };
 
