@@ -6,6 +6,7 @@ node would be started with. What a node then takes of it, `ParamsStore` works ou
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import cache
@@ -28,6 +29,7 @@ from pytpc.values.trace import (
     trace_launch,
 )
 from pytpc.values.yaml_tree import value_of
+from pytpc.workspace.ros2 import SYSTEM_PYTHON, likely_pythons, named_python
 
 _TRACER = Path(__file__).with_name("tracer") / "ros2_launch_tracer.py"
 _PATIENCE_S = 60.0
@@ -36,19 +38,6 @@ OF_ROS2 = "ros2"
 _COMMAND_LINE = "command line"
 _COMMAND_OUTPUT = "__tpc_output_of_a_command"
 Fields = Mapping[str, Any]
-
-
-def trace_any_launch(
-    env: Mapping[str, str],
-    launch: Path,
-    args: Mapping[str, str],
-    *,
-    patience_s: float = _PATIENCE_S,
-) -> Trace:
-    """``trace_launch``, or ``trace_ros2_launch`` for a launch file of ROS 2."""
-    if is_ros2_launch(launch):
-        return trace_ros2_launch(env, launch, args, patience_s=patience_s)
-    return trace_launch(env, launch, args, patience_s=patience_s)
 
 
 def trace_ros2_launch(
@@ -73,7 +62,7 @@ def trace_ros2_launch(
     """
     if not launch.is_file():
         raise InputError("no such launch file", launch)
-    python = interpreter_of("ros2", env.get("PATH"))
+    python = _launch_python(env)
     try:
         answer = run_tracer([python, str(_TRACER)], env, launch, args, patience_s=patience_s)
     except TracerError as error:
@@ -87,6 +76,33 @@ def trace_ros2_launch(
     settings = {name: [{"value": origin.value}] for name, origin in placed.items()}
     nodes = [_launch_node(node) for node in answer["nodes"]]
     return Trace(launch.absolute(), dict(args), settings, nodes, answer["files"], placed=placed)
+
+
+_TRACERS = {False: trace_launch, True: trace_ros2_launch}
+"""What reads a launch file, by whether it is of ROS 2."""
+
+
+def trace_any_launch(
+    env: Mapping[str, str],
+    launch: Path,
+    args: Mapping[str, str],
+    *,
+    patience_s: float = _PATIENCE_S,
+) -> Trace:
+    """What a launch file of either ROS sets, as roslaunch or launch reads it.
+
+    Raises:
+        TpcError: as `trace_launch` and `trace_ros2_launch`.
+    """
+    return _TRACERS[is_ros2_launch(launch)](env, launch, args, patience_s=patience_s)
+
+
+def _launch_python(env: Mapping[str, str]) -> str:
+    """The Python that has launch: that of the user, of the program ros2, or of rclpy."""
+    path = env.get("PATH")
+    if named_python(env) is None and shutil.which("ros2", path=path) is not None:
+        return interpreter_of("ros2", path)
+    return str(next(iter(likely_pythons(env)), SYSTEM_PYTHON))
 
 
 def _launch_node(node: Fields) -> LaunchNode:
