@@ -33,6 +33,9 @@ _GATHER_NS = 1_000_000_000
 # Discovery, and the connection to those discovered, may take more than three seconds.
 _KNOWN_NS = 4_000_000_000
 _ACKNOWLEDGED_S = 1.0
+# So long the last messages have to arrive: what the process has not sent again by then is lost. ROS
+# itself gives a process five seconds to end.
+_LAST_ACKNOWLEDGED_S = 3.0
 # When the process ends, it spares slow subscribers for this long.
 _LAST_NS = 2_000_000_000
 # A recorder may start later: what keys belong to which node is told again.
@@ -147,13 +150,13 @@ class TopicSink(WaitingSink):
                 if self._pause_s:
                     return
 
-    def _wait_for_receivers(self) -> None:
+    def _wait_for_receivers(self, patience_s: float = _ACKNOWLEDGED_S) -> None:
         """Wait until all subscribers have what was sent, but not long for one that hangs."""
         from rclpy.duration import Duration  # noqa: PLC0415
 
         wait = getattr(self._publisher, "wait_for_all_acked", None)
         if wait is not None:
-            wait(Duration(seconds=_ACKNOWLEDGED_S))
+            wait(Duration(seconds=patience_s))
 
     def _finish(self) -> None:
         """Send what waits to those who are known to listen."""
@@ -172,7 +175,7 @@ class TopicSink(WaitingSink):
             self._send()
             time.sleep(self._pause_s if monotonic_ns() < until else 0)
         if is_heard:
-            self._wait_for_receivers()
+            self._wait_for_receivers(_LAST_ACKNOWLEDGED_S)
 
     def status(self) -> str:
         """How many were sent, and whether there are subscribers."""

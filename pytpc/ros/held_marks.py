@@ -8,7 +8,8 @@ from abc import ABC, abstractmethod
 from collections import deque
 from typing import NamedTuple
 
-from pytpc.recording.marking_session import MarkChange
+from pytpc.base.wording import many
+from pytpc.recording.marking_session import MarkChange, View
 from pytpc.recording.marks import (
     MARK_TYPES,
     NOTE_TOPIC,
@@ -35,9 +36,16 @@ class _HeldMark(NamedTuple):
 class HeldMarks(ABC):
     """The marks of an observer on a graph. A mark has its time, so that it may arrive late."""
 
-    def __init__(self, observer: str) -> None:
-        """Nothing is held; ``observer`` is the namespace of the topics, empty for none."""
+    def __init__(self, observer: str, what: str) -> None:
+        """Nothing is held.
+
+        Args:
+            observer: the namespace of the topics, empty for none.
+            what: what the observer is doing, for the title.
+        """
         self._observer = observer
+        self._what = what
+        self._start_ns: int | None = None
         self._held: deque[_HeldMark] = deque()
         self._dropped = 0
         self._sending = threading.Lock()
@@ -50,6 +58,44 @@ class HeldMarks(ABC):
     @abstractmethod
     def _sent(self, topic: str, content: int | str) -> int:
         """Send a time (ns) or a text to all who listen now; their number."""
+
+    @abstractmethod
+    def now_ns(self) -> int | None:
+        """The graph's time: that of /clock if anybody publishes it, else the wall's.
+
+        None if the graph is on simulated time and no /clock has come.
+        """
+
+    def press(self, key: str) -> bool:
+        """No key is for the graph."""
+        return False
+
+    def _view(self, place: str, fault: str, heard: str, *, is_simulated: bool) -> View:
+        """The title, the state of the connection, and the time.
+
+        ``fault`` is empty while there is none, ``heard`` says who listens, see ``_heard``.
+        """
+        now_ns = self.now_ns()
+        if now_ns is not None and (self._start_ns is None or now_ns < self._start_ns):
+            self._start_ns = now_ns
+        who = f" as {self._observer}" if self._observer else ""
+        clock = "simulated time" if is_simulated else "wall time"
+        clock = "no /clock yet" if now_ns is None else clock
+        if self.held:
+            kept = f"{many(self.held, 'message')} kept for a recorder that starts"
+            heard += f"; {kept} within {HELD_S:.0f} s"
+        status = f"{fault or 'connected'}; {heard}; {clock}"
+        return View(f"{self._what}{who} on {place}", (status,), self._start_ns or 0, now_ns)
+
+    def _heard(self, listeners: int) -> str:
+        """Who listens, in words."""
+        if listeners:
+            return f"{many(listeners, 'node')} listening"
+        return (
+            "looking for a recorder"
+            if self._waits
+            else "no recorder listens; start one with: pytpc record"
+        )
 
     @property
     def held(self) -> int:
@@ -67,6 +113,12 @@ class HeldMarks(ABC):
         elif after is not None:
             self._publish(topic_for(after), after.time_ns)
         return ""
+
+    def _send_last(self) -> None:
+        """Give the listeners of messages that are held the time to connect, and send these."""
+        while self._held and self._waits:
+            time.sleep(0.05)
+        self.tick()
 
     def tick(self) -> None:
         """Send messages that nobody got to those who have connected since, in order."""

@@ -6,6 +6,7 @@ node would be started with. What a node then takes of it, `ParamsStore` works ou
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import cache
@@ -28,6 +29,7 @@ from pytpc.values.trace import (
     trace_launch,
 )
 from pytpc.values.yaml_tree import value_of
+from pytpc.workspace.ros2 import SYSTEM_PYTHON, likely_pythons, named_python
 
 _TRACER = Path(__file__).with_name("tracer") / "ros2_launch_tracer.py"
 _PATIENCE_S = 60.0
@@ -36,20 +38,6 @@ OF_ROS2 = "ros2"
 _COMMAND_LINE = "command line"
 _COMMAND_OUTPUT = "__tpc_output_of_a_command"
 Fields = Mapping[str, Any]
-
-
-def trace_any_launch(
-    env: Mapping[str, str],
-    launch: Path,
-    args: Mapping[str, str],
-    *,
-    patience_s: float = _PATIENCE_S,
-    ros2_python: str = "",
-) -> Trace:
-    """``trace_launch``, or ``trace_ros2_launch`` for a launch file of ROS 2."""
-    if is_ros2_launch(launch) or ros2_python:
-        return trace_ros2_launch(env, launch, args, patience_s=patience_s, python=ros2_python)
-    return trace_launch(env, launch, args, patience_s=patience_s)
 
 
 def trace_ros2_launch(
@@ -76,7 +64,7 @@ def trace_ros2_launch(
     """
     if not launch.is_file():
         raise InputError("no such launch file", launch)
-    python = python or interpreter_of("ros2", env.get("PATH"))
+    python = python or _launch_python(env)
     try:
         answer = run_tracer([python, str(_TRACER)], env, launch, args, patience_s=patience_s)
     except TracerError as error:
@@ -98,6 +86,39 @@ def trace_ros2_launch(
         placed=placed,
         unknown=tuple(map(str, answer["unknown"])),
     )
+
+
+def trace_any_launch(
+    env: Mapping[str, str],
+    launch: Path,
+    args: Mapping[str, str],
+    *,
+    patience_s: float = _PATIENCE_S,
+    ros2_python: str = "",
+) -> Trace:
+    """What a launch file of either ROS sets, as roslaunch or launch reads it.
+
+    Args:
+        env: the environment of the workspace, in which packages are found.
+        launch: the launch file.
+        args: its arguments.
+        patience_s: how long it may take.
+        ros2_python: the interpreter that has launch, if it is known to be a file of ROS 2.
+
+    Raises:
+        TpcError: as `trace_launch` and `trace_ros2_launch`.
+    """
+    if is_ros2_launch(launch) or ros2_python:
+        return trace_ros2_launch(env, launch, args, patience_s=patience_s, python=ros2_python)
+    return trace_launch(env, launch, args, patience_s=patience_s)
+
+
+def _launch_python(env: Mapping[str, str]) -> str:
+    """The Python that has launch: that of the user, of the program ros2, or of rclpy."""
+    path = env.get("PATH")
+    if named_python(env) is None and shutil.which("ros2", path=path) is not None:
+        return interpreter_of("ros2", path)
+    return str(next(iter(likely_pythons(env)), SYSTEM_PYTHON))
 
 
 def _launch_node(node: Fields) -> LaunchNode:

@@ -118,7 +118,7 @@ def interpreter_of(name: str, path: str | None) -> str:
     if words and Path(words[0]).name == "env":
         words = [shutil.which(words[-1], path=path) or ""]
     if not words or "python" not in words[0]:
-        words = [shutil.which("python3", path=path) or "/usr/bin/python3"]
+        return shutil.which("python3", path=path) or "/usr/bin/python3"
     return words[0]
 
 

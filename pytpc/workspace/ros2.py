@@ -16,6 +16,8 @@ from pathlib import Path
 from pytpc.base.paths import ROS_PREFIXES, ros_places
 
 AMENT = "AMENT_PREFIX_PATH"
+NAMED_PYTHON = "TPC_ROS2_PYTHON"
+"""The variable by which a user names the Python that has rclpy."""
 COLCON = "COLCON_PREFIX_PATH"
 ROS_VERSION = "ROS_VERSION"
 MARKERS = Path("share/ament_index/resource_index/packages")
@@ -52,18 +54,51 @@ class Ros2:
 
 
 def find_ros2(environment: Mapping[str, str] = os.environ) -> Ros2 | None:
-    """The ROS 2 that was sourced, else that of the active virtual environment; None without."""
+    """The ROS 2 that was sourced, else that of the active virtual environment; None without.
+
+    Its Python is the one that the user names, if there is one.
+    """
     sourced = _folders(environment, AMENT)
+    named = named_python(environment)
     with_rclpy = next((prefix for prefix in sourced if has_module(prefix, "rclpy")), None)
     if with_rclpy is not None:
         # A prefix of conda or of PyPI's wheels has a Python of its own, one of Debian has none.
         own = with_rclpy / "bin/python3"
-        return Ros2(tuple(sourced), own if own.is_file() else SYSTEM_PYTHON)
-    for python in _other_pythons(environment):
+        return Ros2(tuple(sourced), named or (own if own.is_file() else SYSTEM_PYTHON))
+    for python in [*([named] if named else []), *_other_pythons(environment)]:
         prefix = python.parent.parent
         if has_module(prefix, "rclpy"):
             return Ros2((prefix, *sourced), python, is_sourced=False)
     return Ros2(tuple(sourced), SYSTEM_PYTHON) if sourced else None
+
+
+def named_python(environment: Mapping[str, str]) -> Path | None:
+    """The Python that the user names; None where there is no such program."""
+    named = environment.get(NAMED_PYTHON)
+    found = shutil.which(named, path=environment.get("PATH", os.defpath)) if named else None
+    return None if found is None else Path(found).absolute()
+
+
+def likely_pythons(environment: Mapping[str, str]) -> list[Path]:
+    """The Pythons that may have the rclpy of an environment, the likeliest first.
+
+    Some may not: rclpy can be in any folder of PYTHONPATH.
+    """
+    named, ros2 = named_python(environment), find_ros2(environment)
+    first = [named] if named else [] if ros2 is None else [ros2.python]
+    return list(dict.fromkeys([*first, *_other_pythons(environment)]))
+
+
+def setups_with_rclpy(prefixes: Iterable[Path] = ROS_PREFIXES) -> list[Path]:
+    """The set-up files (for any shell) of installed distributions, the newest first."""
+    return sorted(
+        (
+            prefix / "setup.sh"
+            for prefix in prefixes
+            if (prefix / "setup.sh").is_file() and has_module(prefix, "rclpy")
+        ),
+        reverse=True,
+    )
 
 
 def unsourced(

@@ -42,8 +42,9 @@ constexpr size_t KeptLogs = 1000;
 /// once.
 constexpr uint32_t UnseenMessages = 500;
 constexpr int64_t SeenNs = 100 * Ms;
-/// How long the subscribers get to acknowledge the last messages.
-constexpr int64_t LastNs = 500 * Ms;
+/// How long the subscribers get to acknowledge the last messages: what was not
+/// sent again by then is lost. ROS itself gives a process five seconds to end.
+constexpr int64_t LastNs = 3 * Second;
 
 class RclChannel final : public Channel {
 public:

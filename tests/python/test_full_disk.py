@@ -15,8 +15,9 @@ from rosbags.highlevel import AnyReader
 
 from pytpc.base.errors import RunError
 from pytpc.cli.main import main
-from pytpc.ros.ros1 import bag_file
+from pytpc.ros import kept_file
 from pytpc.ros.ros1.bag_file import BagFile
+from pytpc.ros.ros2.mcap_file import McapFile
 from pytpc.ros.source import Source
 
 EXAMPLE = str(Path(__file__).parents[2] / "examples/recorded_mission")
@@ -59,7 +60,7 @@ class FullDisk:
 @pytest.mark.parametrize("room", [0, 10, 60, 110, 200])
 def test_the_bag_of_a_full_disk_is_closed(tmp_path: Path, monkeypatch, room: int) -> None:
     """Wherever it breaks off within the third chunk, the first two can be read."""
-    monkeypatch.setattr(bag_file, "KEEP_S", -1.0)
+    monkeypatch.setattr(kept_file, "KEEP_S", -1.0)
     path = tmp_path / "a.bag"
     bag = BagFile(path)
     for text in ("one", "two"):
@@ -84,13 +85,14 @@ def test_the_bag_of_a_full_disk_is_closed(tmp_path: Path, monkeypatch, room: int
     assert texts_in(path) == whole
 
 
-def test_without_room_for_the_index_nothing_begins(tmp_path: Path, monkeypatch) -> None:
+@pytest.mark.parametrize("kind", [BagFile, McapFile])
+def test_without_room_for_the_index_nothing_begins(tmp_path: Path, monkeypatch, kind) -> None:
     def full(*_: object) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(bag_file.os, "posix_fallocate", full)
+    monkeypatch.setattr(kept_file.os, "posix_fallocate", full)
     with pytest.raises(OSError, match="No space left"):
-        BagFile(tmp_path / "a.bag")
+        kind(tmp_path / "a")
     assert list(tmp_path.iterdir()) == []
 
 

@@ -143,3 +143,15 @@ def test_on_a_full_disk_the_file_has_the_whole_chunks(
         file.close()
     assert len(read(path).events) == 3
     assert dict(file.messages) == {"/threshold_information": 3, "/mark_action": 1}
+
+
+def test_there_is_room_for_the_index_of_a_long_recording(tmp_path: Path) -> None:
+    file = McapFile(tmp_path / "a.mcap")
+    kind = TIME.type
+    mark = bytes(STORE.serialize_cdr(STORE.types[kind](sec=11, nanosec=5), kind))
+    for _ in range(4000):
+        file.write(TIME, 11 * 10**9, mark)
+    # Each mark closes a chunk, and its entry has 9 + 16 + 16 + 4 + 10 + 8 + 4 + 16 bytes.
+    room = (tmp_path / ".a.mcap.reserve").stat().st_size
+    file.close()
+    assert room > 4000 * 83

@@ -22,6 +22,8 @@ from pytpc.workspace.ros2 import (
     for_ros2,
     has_cmake_package,
     how_to_source,
+    likely_pythons,
+    setups_with_rclpy,
     unsourced,
 )
 
@@ -53,7 +55,13 @@ def with_python(prefix: Path) -> Path:
 
 @pytest.fixture(autouse=True)
 def _no_ros(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("AMENT_PREFIX_PATH", "ROS_VERSION", "ROS_DISTRO", "VIRTUAL_ENV"):
+    for name in (
+        "AMENT_PREFIX_PATH",
+        "ROS_VERSION",
+        "ROS_DISTRO",
+        "VIRTUAL_ENV",
+        "TPC_ROS2_PYTHON",
+    ):
         monkeypatch.delenv(name, raising=False)
 
 
@@ -80,6 +88,43 @@ def test_the_active_environment_is_taken_if_it_has_rclpy(tmp_path: Path) -> None
     assert find_ros2({"PATH": f"{active}/bin"}) == expected
     plain = with_python(tmp_path / "plain")
     assert find_ros2({"VIRTUAL_ENV": str(plain), "PATH": f"{plain}/bin"}) is None
+
+
+def test_the_python_that_the_user_names_goes_first(tmp_path: Path) -> None:
+    named = with_python(with_rclpy(tmp_path / "mine")) / "bin/python3"
+    distribution = with_rclpy(tmp_path / "kilted")
+    env = {"TPC_ROS2_PYTHON": str(named), "PATH": ""}
+    assert find_ros2(env) == Ros2((tmp_path / "mine",), named, is_sourced=False)
+    assert find_ros2({**env, "AMENT_PREFIX_PATH": str(distribution)}) == Ros2(
+        (distribution,), named
+    )
+    # One that is no program is as if it were not named.
+    env["TPC_ROS2_PYTHON"] = str(tmp_path / "none")
+    assert find_ros2(env) is None
+
+
+def test_the_pythons_that_may_have_rclpy(tmp_path: Path) -> None:
+    # Without rclpy in its own folders, it may have it in those of PYTHONPATH.
+    plain = with_python(tmp_path / "plain") / "bin/python3"
+    active = with_python(with_rclpy(tmp_path / "venv")) / "bin/python3"
+    distribution = with_rclpy(tmp_path / "jazzy")
+    env = {"VIRTUAL_ENV": str(tmp_path / "venv"), "PATH": str(plain.parent)}
+    assert likely_pythons(env) == [active, plain]
+    env["AMENT_PREFIX_PATH"] = str(distribution)
+    assert likely_pythons(env) == [SYSTEM_PYTHON, active, plain]
+    env["TPC_ROS2_PYTHON"] = str(plain)
+    assert likely_pythons(env) == [plain, active]
+
+
+def test_installed_distributions_of_every_layout_have_rclpy(tmp_path: Path) -> None:
+    humble = with_rclpy(tmp_path / "humble", "local/lib/python3.10/dist-packages")
+    kilted = with_rclpy(tmp_path / "kilted", "lib/python3.12/site-packages")
+    noetic = tmp_path / "noetic"
+    noetic.mkdir()
+    for prefix in (humble, kilted, noetic):
+        (prefix / "setup.sh").touch()
+    found = setups_with_rclpy([humble, kilted, noetic, tmp_path / "none"])
+    assert found == [kilted / "setup.sh", humble / "setup.sh"]
 
 
 def test_a_distribution_that_was_not_sourced_is_only_named(tmp_path: Path) -> None:

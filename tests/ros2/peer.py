@@ -21,7 +21,7 @@ from rcl_interfaces.srv import (
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
 
-PATIENCE_S = 20
+PATIENCE_S = 600
 
 
 class Peer:

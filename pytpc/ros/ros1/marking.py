@@ -9,10 +9,9 @@ import time
 from collections.abc import Callable
 
 from pytpc.base.errors import RunError
-from pytpc.base.wording import many
 from pytpc.ingest.ros1 import decode_time
 from pytpc.recording.marking_session import View
-from pytpc.ros.held_marks import HELD_S, HeldMarks, times_and_note
+from pytpc.ros.held_marks import HeldMarks, times_and_note
 from pytpc.ros.ros1.master import Master
 from pytpc.ros.ros1.publisher import (
     STRING,
@@ -49,13 +48,11 @@ class GraphMarks(HeldMarks):
     def __init__(
         self, master: str, observer: str, what: str = "marking", *, advertise: bool = True
     ) -> None:
-        super().__init__(observer)
-        self._what = what
+        super().__init__(observer, what)
         self._master = Master(master, f"/tpc_mark_{os.getpid()}_{secrets.token_hex(3)}")
         self._advertise = advertise
         self._publisher: RawPublisher | None = None
         self._new = _NewNode()
-        self._start_ns: int | None = None
         self._fault = f"waiting for the ROS master at {master}"
         self._simulated = False
         self._clock_ns: int | None = None
@@ -68,40 +65,21 @@ class GraphMarks(HeldMarks):
         self._looked.wait(3.0)
 
     def now_ns(self) -> int | None:
-        """The graph's time: that of /clock if anybody publishes it, else the wall's.
-
-        None if the graph is on simulated time and no /clock has come.
-        """
+        """See `HeldMarks`."""
         if self._clock_ns is None and not self._simulated:
             return time.time_ns()
         return self._clock_ns
 
-    def press(self, key: str) -> bool:
-        """No key is for the graph."""
-        return False
-
     def view(self) -> View:
         """The title and state of the connection, and the time."""
-        now_ns = self.now_ns()
-        if now_ns is not None and (self._start_ns is None or now_ns < self._start_ns):
-            self._start_ns = now_ns
-        start_ns = self._start_ns or 0
-        who = f" as {self._observer}" if self._observer else ""
-        listeners = self._publisher.listeners() if self._publisher is not None else set()
-        heard = f"{many(len(listeners), 'node')} listening"
-        if not listeners:
-            looks = self._new.waits
-            none = "no recorder listens; start one with: pytpc record"
-            heard = "looking for a recorder" if looks else none
-        if not self._advertise:
-            heard = "listeners are found with the first mark"
-        if self._held:
-            kept = f"{many(len(self._held), 'message')} kept for a recorder that starts"
-            heard += f"; {kept} within {HELD_S:.0f} s"
-        clock = "wall time" if self._clock_ns is None else "simulated time"
-        clock = "no /clock yet" if now_ns is None else clock
-        status = f"{self._fault or 'connected'}; {heard}; {clock}"
-        return View(f"{self._what}{who} on {self._master.uri}", (status,), start_ns, now_ns)
+        listeners = self._publisher.listeners() if self._publisher is not None else ()
+        heard = self._heard(len(listeners))
+        return self._view(
+            self._master.uri,
+            self._fault,
+            heard if self._advertise else "listeners are found with the first mark",
+            is_simulated=self._clock_ns is not None,
+        )
 
     @property
     def _waits(self) -> bool:
@@ -109,19 +87,13 @@ class GraphMarks(HeldMarks):
 
     def close(self) -> None:
         """Leave the graph."""
-        self._wait_for_listeners()
+        self._send_last()
         self._ended = True
         self._wake.set()
         self._thread.join(0.5)
         self._clock.close()
         if self._publisher is not None:
             self._publisher.close()
-
-    def _wait_for_listeners(self) -> None:
-        """Give the listeners of messages that are held the time to connect."""
-        while self._held and self._new.waits:
-            time.sleep(0.05)
-        self.tick()
 
     def _publish(self, topic: str, content: int | str) -> None:
         super()._publish(topic, content)

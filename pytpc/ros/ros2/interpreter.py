@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
 import subprocess
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -13,13 +12,18 @@ from typing import NamedTuple
 from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import project_root
 from pytpc.values.trace import interpreter_of
+from pytpc.workspace.ros2 import (
+    NAMED_PYTHON,
+    SYSTEM_PYTHON,
+    likely_pythons,
+    named_python,
+    setups_with_rclpy,
+)
 
-VARIABLE = "TPC_ROS2_PYTHON"
 HOW_TO = (
     "source ROS 2 (`. /opt/ros/DISTRO/setup.sh`), or name the interpreter that has rclpy:"
-    f" export {VARIABLE}=/path/to/python3"
+    f" export {NAMED_PYTHON}=/path/to/python3"
 )
-_OPT = Path("/opt/ros")
 _RCLPY = ("rclpy",)
 _LAUNCH = ("launch", "launch_ros")
 _PATIENCE_S = 20.0
@@ -40,28 +44,18 @@ def interpreters(env: Mapping[str, str]) -> Iterator[Interpreter]:
         MissingToolError: the one that the user names is not there.
     """
     clean = _without_tpc(env)
-    if named := env.get(VARIABLE):
-        if shutil.which(named) is None:
-            raise MissingToolError(f"{VARIABLE} names no program: {named}")
-        yield Interpreter(named, clean)
+    if env.get(NAMED_PYTHON):
+        named = named_python(env)
+        if named is None:
+            raise MissingToolError(f"{NAMED_PYTHON} names no program: {env[NAMED_PYTHON]}")
+        yield Interpreter(str(named), clean)
         return
-    seen = set()
     own = project_root() / ".venv-ros2/bin/python"
-    venv = env.get("VIRTUAL_ENV", "")
-    places = [
-        shutil.which("python3", path=env.get("PATH", os.defpath)),
-        f"{venv}/bin/python3" if venv else None,
-        "/usr/bin/python3" if env.get("AMENT_PREFIX_PATH") else None,
-        str(own),
-    ]
-    for place in places:
-        if place and place not in seen and os.access(place, os.X_OK):
-            seen.add(place)
-            if _has_packages(place, clean, _RCLPY):
-                yield Interpreter(place, clean)
-    for setup in sorted(_OPT.glob("*/setup.sh"), reverse=True):
-        if next(setup.parent.glob("lib/python3*/site-packages/rclpy"), None) is not None:
-            yield Interpreter("/usr/bin/python3", _sourced(setup, clean))
+    for place in dict.fromkeys([*likely_pythons(env), own]):
+        if os.access(place, os.X_OK) and _has_packages(str(place), clean, _RCLPY):
+            yield Interpreter(str(place), clean)
+    for setup in setups_with_rclpy():
+        yield Interpreter(str(SYSTEM_PYTHON), _sourced(setup, clean))
 
 
 def launch_interpreter(env: Mapping[str, str]) -> str:

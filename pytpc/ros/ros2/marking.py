@@ -8,10 +8,9 @@ import time
 from threading import Event, Thread
 
 from pytpc.base.errors import RunError
-from pytpc.base.wording import many
 from pytpc.ingest.ros2 import decode_time
 from pytpc.recording.marking_session import View
-from pytpc.ros.held_marks import HELD_S, HeldMarks, times_and_note
+from pytpc.ros.held_marks import HeldMarks, times_and_note
 from pytpc.ros.intake import CLOCK
 from pytpc.ros.ros2.address import Ros2Address
 from pytpc.ros.ros2.agent_process import Agent
@@ -52,14 +51,12 @@ class Ros2Marks(HeldMarks):
 
     def __init__(self, address: Ros2Address, observer: str, what: str = "marking") -> None:
         """Become a node of the graph."""
-        super().__init__(observer)
-        self._what = what
+        super().__init__(observer, what)
         self._agent = Agent(address)
         times, note = times_and_note(observer)
         self._agent.advertise({**dict.fromkeys(times, TIME), note: STRING})
         self._agent.subscribe(CLOCK, _CLOCK_TYPE)
         self._since = time.monotonic()
-        self._start_ns: int | None = None
         self._clock_ns: int | None = None
         self._ended = Event()
         self._thread = Thread(target=self._listen, name="clock", daemon=True)
@@ -72,39 +69,23 @@ class Ros2Marks(HeldMarks):
         return is_new and not self._listeners()
 
     def now_ns(self) -> int | None:
-        """The graph's time: that of /clock if anybody publishes it, else the wall's."""
+        """See `HeldMarks`."""
         if self._clock_ns is None and self._agent.graph.clock:
             return None
         return time.time_ns() if self._clock_ns is None else self._clock_ns
 
-    def press(self, key: str) -> bool:
-        """No key is for the graph."""
-        return False
-
     def view(self) -> View:
         """The title, who listens, and the time."""
-        now_ns = self.now_ns()
-        if now_ns is not None and (self._start_ns is None or now_ns < self._start_ns):
-            self._start_ns = now_ns
-        who = f" as {self._observer}" if self._observer else ""
-        heard = f"{many(self._listeners(), 'node')} listening"
-        if not self._listeners():
-            none = "no recorder listens; start one with: pytpc record"
-            heard = "looking for a recorder" if self._waits else none
-        if self.held:
-            kept = f"{many(self.held, 'message')} kept for a recorder that starts"
-            heard += f"; {kept} within {HELD_S:.0f} s"
-        clock = "wall time" if self._clock_ns is None else "simulated time"
-        clock = "no /clock yet" if now_ns is None else clock
-        status = f"{self._agent.fault or 'connected'}; {heard}; {clock}"
-        title = f"{self._what}{who} on {self._agent.address.words}"
-        return View(title, (status,), self._start_ns or 0, now_ns)
+        return self._view(
+            self._agent.address.words,
+            self._agent.fault,
+            self._heard(self._listeners()),
+            is_simulated=self._clock_ns is not None,
+        )
 
     def close(self) -> None:
         """Leave the graph, when those who listen have what was sent."""
-        while self._held and self._waits:
-            time.sleep(0.05)
-        self.tick()
+        self._send_last()
         self._ended.set()
         self._thread.join()
         with contextlib.suppress(RunError):

@@ -13,18 +13,16 @@ import time
 import zlib
 from collections import Counter
 from dataclasses import dataclass, field
-from io import BytesIO
-from pathlib import Path
+from io import BytesIO, FileIO
 
-from pytpc.base.errors import RunError
-from pytpc.recording.marks import MarkMessages
+from pytpc.ros.kept_file import KeptFile
 from pytpc.ros.source import Source
 
-KEEP_S = 1.0
-"""The seconds of a mission that are lost at most when the recorder is killed."""
 _MAGIC = b"\x89MCAP0\r\n"
 _CHUNK = 1 << 20
-_RESERVE = 1 << 18
+# The index is of the definitions and of each chunk; the rest are counts and the ends.
+_LEAST_INDEX = 1 << 18
+_REST = 1 << 16
 _HEADER, _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE = 0x01, 0x02, 0x03, 0x04, 0x05
 _CHUNK_RECORD, _MESSAGE_INDEX, _CHUNK_INDEX = 0x06, 0x07, 0x08
 _STATISTICS, _DATA_END = 0x0B, 0x0F
@@ -50,54 +48,29 @@ class _Pending:
     last_ns: int = 0
 
 
-class McapFile:
-    """An MCAP file that gets its name only when it is complete.
+class McapFile(KeptFile):
+    """An MCAP file that gets its name only when it is complete."""
 
-    If it can no longer be written, ``write`` and ``close`` give it an index and its name before
-    they raise.
-    """
+    kind = "file"
+    remedy = "rank and report read it as it is"
+    _stream: FileIO | None = None
 
-    def __init__(self, path: Path) -> None:
-        """Open ``<path>.active``; what an earlier run left there is deleted.
-
-        Raises:
-            OSError: it cannot be written.
-        """
-        self.messages: Counter[str] = Counter()
-        self._path = path
-        self._active = path.with_name(path.name + ".active")
-        self._active.unlink(missing_ok=True)
-        self._reserve = path.with_name(f".{path.name}.reserve")
+    def _open(self) -> None:
         self._schemas: dict[tuple[str, str], int] = {}
         self._channels: dict[tuple[str, str, str], int] = {}
         self._topics: dict[int, str] = {}
         self._definitions = b""
         self._indexes: list[bytes] = []
+        self._index_bytes = 0
         self._counts: Counter[int] = Counter()
         self._first_ns, self._last_ns = 2**63 - 1, 0
         self._pending = _Pending()
-        self._ended: RunError | None = None
-        self._stream = self._active.open("xb", buffering=0)
         self._whole = 0
-        self._kept = time.monotonic()
-        try:
-            with self._reserve.open("wb") as stream:
-                os.posix_fallocate(stream.fileno(), 0, _RESERVE)
-            self._put(_MAGIC + _record(_HEADER, _text("ros2") + _text("pytpc")))
-        except OSError:
-            self._stream.close()
-            self._reserve.unlink(missing_ok=True)
-            self._active.unlink(missing_ok=True)
-            raise
+        self._stream = self._active.open("xb", buffering=0)
+        self._keep_room(1, _LEAST_INDEX)
+        self._put(_MAGIC + _record(_HEADER, _text("ros2") + _text("pytpc")))
 
-    def write(self, source: Source, time_ns: int, data: bytes) -> None:
-        """Add one message.
-
-        Raises:
-            RunError: it cannot be written; the file is closed, and has what was written before.
-        """
-        if self._ended is not None:
-            raise self._ended
+    def _write(self, source: Source, time_ns: int, data: bytes) -> None:
         channel = self._channel(source)
         pending, time_ns = self._pending, max(time_ns, 0)
         pending.messages.setdefault(channel, []).append((time_ns, pending.records.tell()))
@@ -106,9 +79,8 @@ class McapFile:
         head = struct.pack("<BQHIQQ", _MESSAGE, len(data) + 22, channel, 0, time_ns, time_ns)
         pending.records.write(head + data)
         self.messages[source.topic] += 1
-        due = time.monotonic() - self._kept > KEEP_S
-        if due or pending.records.tell() > _CHUNK or MarkMessages.message_type(source.topic):
-            self._try(self._close_chunk)
+        if pending.records.tell() > _CHUNK or self._is_due(source.topic):
+            self._close_chunk()
 
     def keep(self) -> None:
         """Write what waits, if it has waited for long.
@@ -116,31 +88,8 @@ class McapFile:
         Raises:
             RunError: as ``write``.
         """
-        if self._ended is None and time.monotonic() - self._kept > KEEP_S:
+        if self._ended is None and self._is_due():
             self._try(self._close_chunk)
-
-    def close(self) -> None:
-        """Write the index and give the file its name.
-
-        Raises:
-            RunError: not all of it could be written.
-        """
-        if self._ended is not None:
-            raise self._ended
-
-        def finish() -> None:
-            self._close_chunk()
-            self._finish()
-
-        self._try(finish)
-
-    def _try(self, step: object) -> None:
-        assert callable(step)
-        try:
-            step()
-        except OSError as error:
-            self._ended = self._rescue(error)
-            raise self._ended from error
 
     def _channel(self, source: Source) -> int:
         """The number of a topic; a new one is described in the chunk."""
@@ -169,7 +118,7 @@ class McapFile:
         Raises:
             OSError: the disk is full.
         """
-        self._kept = time.monotonic()
+        self._kept_at = time.monotonic()
         pending = self._pending
         data = pending.records.getvalue()
         if not pending.messages:
@@ -186,24 +135,27 @@ class McapFile:
         self._put(chunk + index)
         body = times + struct.pack("<QQI", begin, len(chunk), len(offsets)) + offsets
         body += struct.pack("<Q", len(index)) + _text("")
-        self._indexes.append(body + struct.pack("<QQ", len(data), len(data)))
+        self._indexes.append(_record(_CHUNK_INDEX, body + struct.pack("<QQ", len(data), len(data))))
+        self._index_bytes += len(self._indexes[-1])
         for channel, entries in pending.messages.items():
             self._counts[channel] += len(entries)
         self._first_ns = min(self._first_ns, pending.first_ns)
         self._last_ns = max(self._last_ns, pending.last_ns)
         self._pending = _Pending()
+        self._keep_room(len(self._definitions) + self._index_bytes + _REST, _LEAST_INDEX)
 
     def _put(self, data: bytes) -> None:
+        assert self._stream is not None, "it is open"
         view = memoryview(data)
         while view:
             view = view[self._stream.write(view) :]
         self._whole += len(data)
 
     def _finish(self) -> None:
+        self._close_chunk()
         end = _record(_DATA_END, struct.pack("<I", 0))
         begin = self._whole + len(end)
-        summary = self._definitions
-        summary += b"".join(_record(_CHUNK_INDEX, one) for one in self._indexes)
+        summary = self._definitions + b"".join(self._indexes)
         counts = b"".join(struct.pack("<HQ", *one) for one in sorted(self._counts.items()))
         first = self._first_ns if self._counts else 0
         body = struct.pack("<QH", self._counts.total(), len(self._schemas))
@@ -212,31 +164,28 @@ class McapFile:
         summary += _record(_STATISTICS, body + struct.pack("<I", len(counts)) + counts)
         footer = _record(_FOOTER, struct.pack("<QQI", begin, 0, 0))
         self._reserve.unlink(missing_ok=True)
-        self._put(end + summary + footer + _MAGIC)
+        assert self._stream is not None, "it is open"
+        whole = self._whole
+        try:
+            self._put(end + summary + footer + _MAGIC)
+        finally:
+            self._whole = whole
         # The robot may be switched off as soon as the recording has ended.
         os.fsync(self._stream.fileno())
         self._stream.close()
-        self._active.replace(self._path)
+        self._name()
 
-    def _rescue(self, error: OSError) -> RunError:
-        """Close the file after its last whole chunk; the error says what became of it."""
-        why = error.strerror or str(error)
+    def _cut(self) -> int:
+        assert self._stream is not None, "it is open"
         lost = sum(map(len, self._pending.messages.values()))
         for channel, entries in self._pending.messages.items():
             self.messages[self._topics[channel]] -= len(entries)
         self._pending = _Pending()
-        try:
-            self._reserve.unlink(missing_ok=True)
-            self._stream.truncate(self._whole)
-            self._stream.seek(self._whole)
-            self._finish()
-        except OSError:
+        self._stream.truncate(self._whole)
+        self._stream.seek(self._whole)
+        return lost
+
+    def _abandon(self) -> None:
+        if self._stream is not None:
             with contextlib.suppress(OSError):
                 self._stream.close()
-            what = f"cannot be written: {why}; make room; rank and report read it as it is"
-            return RunError(what, self._active)
-        return RunError(
-            f"the recording ended: {why}; the file is closed and has all but the last {lost}"
-            " messages; make room before you record again",
-            self._path,
-        )
