@@ -125,6 +125,14 @@ if __name__ == '__main__':
 """
 
 
+_TOPICS = {
+    "/clock": "rosgraph_msgs/Clock",
+    MISSION_DONE: "+std_msgs/Bool",
+    **dict.fromkeys(MARK_TOPICS, "builtin_interfaces/Time"),
+}
+"""What is heard of every robot."""
+
+
 def flown(
     robot: Ros2Robot,
     treatment: Treatment,
@@ -163,28 +171,11 @@ def flown(
     with ExitStack() as started:
         processes = _Processes(out_dir / "ros", domain)
         started.callback(processes.stop)
-        topics = {
-            "/clock": "rosgraph_msgs/Clock",
-            MISSION_DONE: "+std_msgs/Bool",
-            **dict.fromkeys(MARK_TOPICS, "builtin_interfaces/Time"),
-            **dict(example.ros2_types),
-        }
-        words = [f"{topic}={kind}" for topic, kind in topics.items()]
-        processes.listen([_LISTENER, *words], heard)
+        topics = {**_TOPICS, **dict(example.ros2_types)}
+        processes.listen([_LISTENER, *(f"{name}={kind}" for name, kind in topics.items())], heard)
         path = str(SHARED_PACKAGE / "src")
         processes.start("observer", [example.observer, str(seed)], PYTHONPATH=path)
-        given = [word for file in files for word in ("--params-file", str(file.absolute()))]
-        given += ["-p", f"rate:={rate}"] if rate else []
-        for name, script in robot.scripts.items():
-            own = ["-p", f"seed:={seed}"] if f"/{name}" == example.simulator else []
-            words = ["--static", str(out_dir / MERGED_FILE), "--", str(script), "--ros-args"]
-            processes.start(
-                name,
-                [RUN, *words, *given, *own],
-                PYTHONPATH=str(example.folder),
-                TPC_SINK="file",
-                TPC_FOLDER=str(out_dir / REPORTS_FOLDER),
-            )
+        _start_nodes(processes, robot, files, out_dir, seed=seed, rate=rate)
         ended = ""
         while not ended:
             time.sleep(_POLL_S)
@@ -199,6 +190,31 @@ def flown(
             elif wall_s > timeout_s:
                 ended = "timeout"
     return Flown(ended, time.monotonic() - began, heard, counter.count().reports)
+
+
+def _start_nodes(
+    processes: _Processes,
+    robot: Ros2Robot,
+    files: Sequence[Path],
+    out_dir: Path,
+    *,
+    seed: int,
+    rate: float,
+) -> None:
+    """Start the robot's nodes with these files of parameters; they report to files."""
+    example = robot.example
+    given = [word for file in files for word in ("--params-file", str(file.absolute()))]
+    given += ["-p", f"rate:={rate}"] if rate else []
+    for name, script in robot.scripts.items():
+        own = ["-p", f"seed:={seed}"] if f"/{name}" == example.simulator else []
+        words = ["--static", str(out_dir / MERGED_FILE), "--", str(script), "--ros-args"]
+        processes.start(
+            name,
+            [RUN, *words, *given, *own],
+            PYTHONPATH=str(example.folder),
+            TPC_SINK="file",
+            TPC_FOLDER=str(out_dir / REPORTS_FOLDER),
+        )
 
 
 class _Processes:
