@@ -105,10 +105,10 @@ def watch_command(given: _WatchArguments) -> None:
     """Show the suspected parameters while the robot runs, and mark.
 
     A recording of `record` that runs on this machine is found by itself. Otherwise, the reports
-    come from the graph at ROS_MASTER_URI; ROS need not be installed on this machine. With
-    RECORDING, a clock runs through the recording instead. The keys are those of `mark`, and the
-    ranking at each mark is kept. Use `rank` afterwards to judge by all marks together. --json
-    prints what --once shows, for programs.
+    come from the graph at ROS_MASTER_URI, for which ROS need not be installed on this machine, or
+    from that of ROS 2 in ROS_DOMAIN_ID. With RECORDING, a clock runs through the recording instead.
+    The keys are those of `mark`, and the ranking at each mark is kept. Use `rank` afterwards to
+    judge by all marks together. --json prints what --once shows, for programs.
     """
     check_observer(given.observer)
     graph = graph_to_mark(given.recording, given.running_folder)

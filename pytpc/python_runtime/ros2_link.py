@@ -37,6 +37,8 @@ class Link:
 
         self.node_name = node
         self.began_ns = monotonic_ns()
+        # How long it took to join the graph: so slow is the machine at present.
+        self.took_ns = 0
         self._publishers: dict[str, Any] = {}
         self._executor: Any = None
         self.node: Any = None
@@ -50,6 +52,7 @@ class Link:
             self.node = _hidden_node(node, self._context, ask)
             if ask is not None:
                 self._executor = _executor(self._context, self.node)
+            self.took_ns = monotonic_ns() - self.began_ns
         except BaseException as error:
             is_shut = has_begun and not self.is_open()
             self.close()

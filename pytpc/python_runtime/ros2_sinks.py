@@ -32,6 +32,10 @@ _DISCOVERY_NS = 200_000_000
 _GATHER_NS = 1_000_000_000
 # Discovery, and the connection to those discovered, may take more than three seconds.
 _KNOWN_NS = 4_000_000_000
+# To join the graph usually takes less than this. Where it takes longer, all of the above gets as many
+# times longer, at most twice.
+_JOINED_NS = 20_000_000
+_SLOWEST = 2.0
 _ACKNOWLEDGED_S = 1.0
 # So long the last messages have to arrive: what the process has not sent again by then is lost. ROS
 # itself gives a process five seconds to end.
@@ -163,8 +167,9 @@ class TopicSink(WaitingSink):
         link = self._link()
         if link is None or not link.is_open():
             return
+        slowness = min(max(1.0, link.took_ns / _JOINED_NS), _SLOWEST)
         while self.is_last and self.has_waiting() and not self._is_ready(at_once=True):
-            age = monotonic_ns() - link.began_ns
+            age = (monotonic_ns() - link.began_ns) / slowness
             is_known = link.known_subscribers(self.topic) > 0
             if not link.is_open() or age >= (_KNOWN_NS if is_known else self._search_ns):
                 break

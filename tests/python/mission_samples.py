@@ -13,6 +13,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from pytpc.recording.events import Events, Report
 from pytpc.recording.summaries import Summaries, Summary
+from pytpc.ros.mission_run import MissionRun
 from pytpc.static.link_unit import Comparison, Counts, LinkUnit, ParameterRead, Place, Tool
 from pytpc.static.static_info import StaticInfo
 
@@ -219,3 +220,18 @@ def shortest(value: float) -> str:
 
 def close(left: float, right: float) -> bool:
     return bool(np.isclose(left, right, rtol=1e-9, atol=0.0))
+
+
+def mission_run(folder: Path, **changes: object) -> MissionRun:
+    plain = MissionRun(
+        bag=folder / "mission.bag",
+        params=folder / "params.yaml",
+        ended="done",
+        sim_s=40.0,
+        wall_s=10.0,
+        reports=10,
+        messages={"/camera/picture": 1, "/mark_action": 2},
+        lost={},
+        missed_before={},
+    )
+    return replace(plain, **changes)  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""Recording, treatments and the judgement of a study; the real graph is in tests/ros."""
+"""Recording: the recorder, the settings and the runs; the real graph is in tests/ros."""
 
 from __future__ import annotations
 
@@ -11,27 +11,22 @@ import threading
 import time
 from collections import Counter
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
-import yaml
 from click.testing import CliRunner
 from hypothesis import given
 from hypothesis import strategies as st
-from mission_samples import comparison, events, ns, static_info
-from rich.console import Console
+from mission_samples import mission_run, ns
 from rosbags.highlevel import AnyReader
 
 from pytpc.api.record import sink_settings
-from pytpc.base.errors import InputError, MissingToolError, RunError
+from pytpc.base.errors import MissingToolError, RunError
 from pytpc.cli.main import main
 from pytpc.cli.mission_commands import record_command
-from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.ingest.losses import LossCounter
 from pytpc.ingest.ros1 import decode_log
-from pytpc.recording.marks import Mark
-from pytpc.recording.mission import Dropped, Recording
+from pytpc.recording.mission import Dropped
 from pytpc.ros.mission_run import (
     MissionRun,
     Progress,
@@ -51,15 +46,6 @@ from pytpc.ros.ros1.record_mission import launch_command, record_graph, run_miss
 from pytpc.ros.ros1.recorder import Discovery, Recorder
 from pytpc.ros.ros1.relay import Relay
 from pytpc.ros.source import Source
-from pytpc_evaluation.demo.demo import TreatedMission, failures, result_table
-from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER, Example
-from pytpc_evaluation.treatment import Treatment, load_treatment
-
-TREATMENTS = [
-    (example, path.name)
-    for example in (IMAGE_CAPTURE, WATER_SAMPLER)
-    for path in sorted((example.folder / "treatments").iterdir())
-]
 
 CLOCK = Source("/clock", "/sim", "rosgraph_msgs/Clock", "a9c97c1d230cfc112e270351a944ee47", "")
 CHAT = Source(
@@ -666,244 +652,3 @@ def test_what_may_end_by_itself(tmp_path):
     assert not running.has_ended_well
     graph.check()
     graph.stop(running)
-
-
-# --- treatments
-
-
-@pytest.mark.parametrize(
-    ("example", "name"), TREATMENTS, ids=lambda each: getattr(each, "name", each)
-)
-def test_treatments_of_the_examples_change_what_they_say(example, name):
-    treatment = example.treatment(name)
-    own = yaml.safe_load((example.folder / "config/params.yaml").read_text())
-    overlay = yaml.safe_load(treatment.overlay.read_text())
-    changed = {
-        (node, parameter, own[node][parameter], value)
-        for node, parameters in overlay.items()
-        for parameter, value in parameters.items()
-        if own[node][parameter] != value
-    }
-    assert treatment.name == name
-    if treatment.parameter is None:
-        assert changed == set()
-    else:
-        assert treatment.node is not None
-        node = treatment.node.removeprefix("/")
-        parameter = treatment.parameter.removeprefix("~")
-        assert changed == {(node, parameter, treatment.old, treatment.new)}
-
-
-@pytest.fixture
-def folder(tmp_path):
-    (tmp_path / "params.yaml").write_text("mission: {limit: 3}\n")
-    (tmp_path / "treatment.json").write_text(json.dumps(GOOD))
-    return tmp_path
-
-
-GOOD = {
-    "name": "low",
-    "type": "type1",
-    "parameter": "limit",
-    "node": "/mission",
-    "old": 20,
-    "new": 3,
-    "launch": {},
-    "effect": "It lands.",
-}
-
-
-def test_treatment_is_read(folder):
-    treatment = load_treatment(folder)
-    assert treatment.mark_type == "I"
-    assert treatment.change == "limit 20 -> 3"
-    assert treatment.overlay == folder / "params.yaml"
-    assert treatment.tipping is None
-
-
-def test_where_the_behaviour_tips_may_be_said(folder):
-    (folder / "treatment.json").write_text(json.dumps({**GOOD, "tipping": 12}))
-    assert load_treatment(folder).tipping == 12
-
-
-@pytest.mark.parametrize(
-    ("change", "what"),
-    [
-        ({"type": "bad"}, "type is 'bad', not one of clean, type1, type2, fault"),
-        ({"old": None}, "old is not a number"),
-        ({"new": True}, "new is not a number"),
-        ({"node": None}, "node is not a text"),
-        ({"type": "clean"}, "type clean has no changed parameter"),
-        ({"parameter": None, "node": None}, "type type1 has a changed parameter"),
-        ({"launch": {"fault": True}}, "launch is not an object of texts"),
-        ({"extra": 1}, "exactly the fields"),
-        ({"tipping": "7"}, "tipping is not a number or null"),
-        ({"tipping": True}, "tipping is not a number or null"),
-        ({"round": 0}, "round is not a whole number from 1"),
-        ({"round": True}, "round is not a whole number from 1"),
-        ({"round": 1.5}, "round is not a whole number from 1"),
-    ],
-)
-def test_wrong_treatments_say_what_is_wrong(folder, change, what):
-    (folder / "treatment.json").write_text(json.dumps({**GOOD, **change}))
-    with pytest.raises(InputError, match=what) as caught:
-        load_treatment(folder)
-    assert str(caught.value).startswith(f"{folder}/treatment.json: ")
-
-
-@pytest.mark.parametrize("tipping", [7, 6.5, None])
-def test_a_treatment_may_say_where_the_behaviour_tips(folder, tipping):
-    assert load_treatment(folder).tipping is None
-    (folder / "treatment.json").write_text(json.dumps({**GOOD, "tipping": tipping}))
-    assert load_treatment(folder).tipping == tipping
-
-
-def test_nothing_tips_where_no_parameter_is_changed(folder):
-    nothing = dict.fromkeys(("parameter", "node", "old", "new"))
-    clean = {**GOOD, **nothing, "type": "clean", "tipping": 7}
-    (folder / "treatment.json").write_text(json.dumps(clean))
-    with pytest.raises(InputError, match="tipping is not null"):
-        load_treatment(folder)
-
-
-def test_broken_json_says_the_line(folder):
-    (folder / "treatment.json").write_text('{\n  "name": "low",\n  "type"\n}\n')
-    with pytest.raises(InputError, match=r"treatment\.json:4: not JSON"):
-        load_treatment(folder)
-
-
-def test_treatment_without_its_parameters_is_an_error(folder):
-    (folder / "params.yaml").unlink()
-    with pytest.raises(InputError, match=r"params\.yaml: no such file"):
-        load_treatment(folder)
-
-
-# --- the judgement
-
-
-def mission_run(folder: Path, **changes: object) -> MissionRun:
-    plain = MissionRun(
-        bag=folder / "mission.bag",
-        params=folder / "params.yaml",
-        ended="done",
-        sim_s=40.0,
-        wall_s=10.0,
-        reports=10,
-        messages={"/camera/picture": 1, "/mark_action": 2},
-        lost={},
-        missed_before={},
-    )
-    return replace(plain, **changes)  # type: ignore[arg-type]
-
-
-LIMIT = comparison(1, "limit")
-OTHERS = [comparison(number, f"other{number}") for number in range(2, 6)]
-STATIC = static_info(LIMIT, *OTHERS)
-TYPE1 = Treatment("low", "type1", "limit", "/m", 20, 3, {}, "It lands.", Path("params.yaml"))
-CLEAN = Treatment("clean", "clean", None, None, None, None, {}, "It works.", Path("params.yaml"))
-
-
-def flown(
-    treatment: Treatment,
-    run: MissionRun,
-    marks: list[Mark],
-    rows: list,
-    example: Example = IMAGE_CAPTURE,
-) -> TreatedMission:
-    """A mission with the given evaluations: (seconds, number of the key, result, cmp, thresh)."""
-    recording = Recording(treatment.name, events(rows), tuple(marks), 0, ns(40.0))
-    rankings = rank_marks(recording, STATIC)
-    return TreatedMission(example, treatment, 1, run, recording, rankings)
-
-
-# Type I scores are (mark - last flop) * (1 + flops). At 10 s: the limit flopped once at 9 s, which
-# makes 1 * 2 = 2. Others: flopped at 9.5 s, 0.5 * 2 = 1, each of them before the limit.
-LIMIT_ROWS = [(8.0, 1, 0, 2.0, 3.0), (9.0, 1, 1, 4.0, 3.0)]
-
-
-def other_rows(number: int) -> list:
-    return [(8.0, number, 0, 2.0, 3.0), (9.5, number, 1, 4.0, 3.0)]
-
-
-def test_culprit_among_the_first_three_is_no_failure(tmp_path):
-    rows = [*LIMIT_ROWS, *other_rows(2), *other_rows(3)]
-    mission = flown(TYPE1, mission_run(tmp_path), [Mark(ns(10.0), "I")], rows)
-    assert mission.rankings[0].position_of("limit") == 3
-    assert failures(mission) == []
-
-
-def test_culprit_at_the_fourth_place_is_a_failure(tmp_path):
-    rows = [*LIMIT_ROWS, *other_rows(2), *other_rows(3), *other_rows(4)]
-    mission = flown(TYPE1, mission_run(tmp_path), [Mark(ns(10.0), "I")], rows)
-    assert failures(mission) == ["low: limit is at position 4 at the mark 10.0 s"]
-
-
-def test_culprit_without_a_score_is_a_failure(tmp_path):
-    mission = flown(TYPE1, mission_run(tmp_path), [Mark(ns(10.0), "I")], other_rows(2))
-    assert failures(mission) == ["low: limit is nowhere at the mark 10.0 s"]
-
-
-def test_marks_of_the_wrong_type_are_not_judged(tmp_path):
-    # At 30 s the limit has no type II score, for it was not evaluated in the 12 s before.
-    marks = [Mark(ns(10.0), "I"), Mark(ns(30.0), "II")]
-    mission = flown(TYPE1, mission_run(tmp_path), marks, LIMIT_ROWS)
-    assert len(mission.judged) == 1
-    assert failures(mission) == []
-
-
-def test_a_mission_that_did_not_go_as_demanded_is_a_failure(tmp_path):
-    assert failures(flown(TYPE1, mission_run(tmp_path), [], LIMIT_ROWS)) == [
-        "low: the observer set no mark of type I"
-    ]
-    late = mission_run(tmp_path, ended="timeout", messages={}, lost={"/a": 2, "/b": 1})
-    assert failures(flown(CLEAN, late, [Mark(ns(9.5), "I")], LIMIT_ROWS)) == [
-        "clean: the mission did not end in 10 s",
-        "clean: the observer set 1 marks",
-        "clean: no picture was taken",
-        "clean: 3 log messages were lost by the recorder",
-    ]
-    type2 = replace(TYPE1, name="high", type="type2")
-    assert failures(flown(type2, mission_run(tmp_path), [Mark(ns(9.5), "II")], LIMIT_ROWS)) == [
-        "high: a picture was taken"
-    ]
-
-
-def test_a_filled_vial_is_a_failure_under_each_treatment_that_changes_something(tmp_path):
-    filled = mission_run(tmp_path, messages={"/truth/vial_filled": 1})
-    empty = mission_run(tmp_path, messages={"/camera/picture": 1})
-    mark = [Mark(ns(10.0), "I")]
-    assert failures(flown(TYPE1, filled, mark, LIMIT_ROWS, WATER_SAMPLER)) == [
-        "low: the vial was filled"
-    ]
-    assert failures(flown(TYPE1, empty, mark, LIMIT_ROWS, WATER_SAMPLER)) == []
-    assert failures(flown(CLEAN, filled, [], LIMIT_ROWS, WATER_SAMPLER)) == []
-    assert failures(flown(CLEAN, empty, [], LIMIT_ROWS, WATER_SAMPLER)) == [
-        "clean: the vial was not filled"
-    ]
-
-
-def test_table_has_a_row_for_each_mark(tmp_path):
-    marks = [Mark(ns(10.0), "I"), Mark(ns(11.0), "II")]
-    missions = [
-        flown(CLEAN, mission_run(tmp_path), [], LIMIT_ROWS),
-        flown(TYPE1, mission_run(tmp_path), marks, LIMIT_ROWS),
-    ]
-    console = Console(width=200, record=True, file=(tmp_path / "out").open("w"))
-    console.print(result_table(missions, STATIC))
-    console.file.close()
-    rows = [line.split("│") for line in console.export_text().splitlines() if "│" in line]
-    cells = [[cell.strip() for cell in row[1:-1]] for row in rows]
-    assert cells[0][:3] == ["clean", "-", "none"]
-    # The smallest change: with a limit of 4 the last flop, 4 > limit, would not have been.
-    first = ["low", "limit 20 -> 3", "10.0 s", "I", "1 of 5", "1.00"]
-    assert cells[1][:6] == first
-    assert "raise limit from 3 to 4" in cells[1][6]
-    assert cells[1][7] == "yes"
-    assert cells[2][2:4] == ["11.0 s", "II (wrong type)"]
-    assert cells[2][6:] == ["", ""]
-
-
-def test_a_treatment_may_say_in_which_round_of_the_study_it_was_added(folder):
-    assert load_treatment(folder).round == 1
-    (folder / "treatment.json").write_text(json.dumps({**GOOD, "round": 2}))
-    assert load_treatment(folder).round == 2
