@@ -81,7 +81,12 @@ def test_an_installed_node_reports_in_the_environment_of_the_build(
     assert script == workspace / ".tpc/install/guard/lib/guard/speed_guard"
     reports = {"TPC_SINK": "file", "TPC_FOLDER": str(tmp_path / "reports")}
     ran = subprocess.run(
-        [script], env={**env, **reports}, capture_output=True, text=True, timeout=PATIENCE_S, check=False
+        [script],
+        env={**env, **reports},
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE_S,
+        check=False,
     )
     assert (ran.returncode, ran.stderr) == (0, "")
     events = read(tmp_path / "reports").events

@@ -22,7 +22,7 @@ public:
           return onGoal(*goal);
         },
         std::bind(&Guard::onCancel, this, std::placeholders::_1),
-        [this](std::shared_ptr<GoalHandle> handle) {
+        [](std::shared_ptr<GoalHandle> handle) {
           handle->succeed(std::make_shared<Fibonacci::Result>());
         });
     client_ = rclcpp_action::create_client<Fibonacci>(this, "~/count");
