@@ -95,9 +95,12 @@ static const Section Sections[] = {
 };
 
 static constexpr NameList NameLists[] = {
-    {"opaque", &RuleFile::Opaque},           {"kept", &RuleFile::Kept},
-    {"counting", &RuleFile::Counting},       {"silent", &RuleFile::Silent},
+    {"opaque", &RuleFile::Opaque},
+    {"kept", &RuleFile::Kept},
+    {"counting", &RuleFile::Counting},
+    {"silent", &RuleFile::Silent},
     {"transparent", &RuleFile::Transparent},
+    {"destroying", &RuleFile::Destroying},
 };
 
 /// Sorted, so that the first error reported for a file is always the same.

@@ -13,7 +13,7 @@ namespace tpc {
 
 struct RuleFile {
   std::vector<Rule> Rows;
-  std::vector<std::string> Opaque, Kept, Counting,
+  std::vector<std::string> Opaque, Kept, Counting, Destroying,
       Silent; ///< prefixes of names
   std::vector<std::string> ContainerClasses, ReadingMethods, Transparent;
   /// Functions that override one of another library expose something, but not

@@ -81,6 +81,7 @@ Expected<Rules> Rules::load(const Options &Opts) {
     append_range(R.OpaquePrefixes, File->Opaque);
     append_range(R.KeptPrefixes, File->Kept);
     append_range(R.CountingPrefixes, File->Counting);
+    append_range(R.DestroyingPrefixes, File->Destroying);
     append_range(R.SilentPrefixes, File->Silent);
     append_range(R.KeptOverrides, File->KeptOverrides);
     append_range(R.Tools, File->Tools);
@@ -117,6 +118,10 @@ bool Rules::isOpaque(StringRef Name) const {
 
 bool Rules::isCounting(StringRef Name) const {
   return beginsWithOneOf(Name, CountingPrefixes);
+}
+
+bool Rules::isDestroying(StringRef Name) const {
+  return beginsWithOneOf(Name, DestroyingPrefixes);
 }
 
 bool Rules::isSilent(StringRef Name) const {
@@ -259,7 +264,7 @@ const RuleMatches::Inlined &RuleMatches::inlined(const DISubprogram &F) const {
       Mangled = Declared->getLinkageName();
     std::string Name = qualifiedName(Mangled);
     It->second = {Tables->isTransparent(Name), Tables->isCounting(Name),
-                  Tables->isSilent(Name)};
+                  Tables->isDestroying(Name), Tables->isSilent(Name)};
   }
   return It->second;
 }

@@ -157,6 +157,10 @@ public:
   /// object.
   bool isCounting(llvm::StringRef Name) const;
 
+  /// True if a function of this qualified name only ends the life of an object:
+  /// what it calls through a pointer are destructors.
+  bool isDestroying(llvm::StringRef Name) const;
+
   /// True if what a function of this qualified name publishes is about the
   /// library that it belongs to, not about the robot.
   bool isSilent(llvm::StringRef Name) const;
@@ -177,7 +181,7 @@ private:
 
   llvm::StringMap<std::vector<Rule>> ByName;
   std::vector<std::string> OpaquePrefixes, KeptPrefixes, CountingPrefixes,
-      SilentPrefixes, KeptOverrides, Tools;
+      DestroyingPrefixes, SilentPrefixes, KeptOverrides, Tools;
   bool ShowsOverrides = false;
   llvm::StringSet<> ContainerClasses, ReadingMethods, Transparent;
   /// Cached by mangled name, so that each name is demangled once.
@@ -241,6 +245,10 @@ public:
   bool isCounting(const llvm::DISubprogram &F) const {
     return inlined(F).Counting;
   }
+  /// See Rules::isDestroying; works for inlined functions too.
+  bool isDestroying(const llvm::DISubprogram &F) const {
+    return inlined(F).Destroying;
+  }
   /// See Rules::isSilent; works for inlined functions too.
   bool isSilent(const llvm::DISubprogram &F) const { return inlined(F).Silent; }
   /// See Rules::isContainer.
@@ -261,7 +269,8 @@ private:
   /// What the tables say about a function that may have been inlined
   /// everywhere.
   struct Inlined {
-    bool Transparent = false, Counting = false, Silent = false;
+    bool Transparent = false, Counting = false, Destroying = false,
+         Silent = false;
   };
   const Inlined &inlined(const llvm::DISubprogram &F) const;
 

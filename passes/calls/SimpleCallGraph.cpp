@@ -6,6 +6,7 @@
 #include "calls/ClassHierarchy.h"
 #include "calls/FunctionPointers.h"
 #include "support/Functions.h"
+#include "support/Names.h"
 #include "support/Print.h"
 
 #include "llvm/ADT/Statistic.h"
@@ -54,6 +55,18 @@ CallGraphResult::callees(const CallBase &Call) const {
   else if (auto It = Indirect.find(&Call); It != Indirect.end())
     for_each(It->second, Add);
   return Found;
+}
+
+bool CallGraphResult::onlyDestroys(const CallBase &Call) const {
+  if (const Function *F = Call.getCalledFunction())
+    return endsLife(Call) || isDestructor(F->getName());
+  for (const DILocation *At = Call.getDebugLoc(); At; At = At->getInlinedAt())
+    if (Rules->isDestroying(*At->getScope()->getSubprogram()))
+      return true;
+  auto It = Indirect.find(&Call);
+  return It != Indirect.end() && !It->second.empty() &&
+         all_of(It->second,
+                [](const Function *F) { return isDestructor(F->getName()); });
 }
 
 /// Trampolines are shallow. A larger function does not count as one.

@@ -32,6 +32,11 @@ public:
   llvm::SmallVector<llvm::Function *, 1>
   callees(const llvm::CallBase &Call) const;
 
+  /// True if all that \p Call enters are destructors, or a function without a
+  /// body that ends the life of its argument: nobody reads what is written
+  /// there.
+  bool onlyDestroys(const llvm::CallBase &Call) const;
+
   /// The instructions that pass on the address of \p F, in the order of the
   /// module.
   llvm::ArrayRef<llvm::Instruction *> mentions(const llvm::Function *F) const;

@@ -89,7 +89,8 @@ std::optional<NamedRead> planName(const ParameterRead &Read,
   else if (!R.Handle)
     return std::nullopt;
   const Function *Callee = Call->getCalledFunction();
-  const StringRef Mangled = Callee ? Callee->getName() : StringRef(Row.Symbol);
+  const StringRef Mangled =
+      Callee ? nameOfOriginal(*Callee) : StringRef(Row.Symbol);
   std::optional<bool> IsText =
       R.Name ? isText(Mangled, *Row.Name) : std::nullopt;
   if (!IsText || !R.Name->getType()->isPointerTy())

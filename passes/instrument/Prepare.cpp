@@ -242,7 +242,7 @@ static cl::opt<unsigned> MaxAdded(
 static std::string copyName(const Function &F, unsigned &Number) {
   std::string Name;
   do
-    Name = (F.getName() + ".tpc." + Twine(++Number)).str();
+    Name = (F.getName() + CopyMark + Twine(++Number)).str();
   while (F.getParent()->getNamedValue(Name));
   return Name;
 }

@@ -168,7 +168,7 @@ void AccessBuilder::fileCall(CallBase &Call) {
   if (Row && Row->Kind == Rule::Text && Row->Relation != "copy")
     return;
   bool Opaque = Calls.callees(Call).empty();
-  if (endsLife(Call) || (Opaque && isDestructor(Call)))
+  if (Calls.onlyDestroys(Call) || (Opaque && isDestructor(Call)))
     return;
   if (const Value *Pointer = Row ? alwaysReplaced(Call, *Row) : nullptr)
     fileReplacing(Call, Pointer);

@@ -86,10 +86,26 @@ SmallVector<Value *, 1> valuesOf(CallBase &Call) {
   return Loads;
 }
 
+/// The C++ type for the number of a type, such as `(rclcpp::ParameterType)3`;
+/// empty if \p Argument is none.
+static StringRef typeOfNumber(StringRef Argument) {
+  static constexpr StringRef Types[] = {
+      "bool",        "long",        "double",      "std::string", "std::vector",
+      "std::vector", "std::vector", "std::vector", "std::vector"};
+  unsigned Number = 0;
+  if (!Argument.consume_front("(rclcpp::ParameterType)") ||
+      Argument.getAsInteger(10, Number) || Number == 0 ||
+      Number > std::size(Types))
+    return "";
+  return Types[Number - 1];
+}
+
 std::string accessedType(const Function &F, const Rule &Row) {
   if (!Row.Type.empty())
     return Row.Type;
   std::string Type = functionArgument(F);
+  if (StringRef Numbered = typeOfNumber(Type); !Numbered.empty())
+    return Numbered.str();
   // Not if the argument is a value.
   if (Type.empty() || StringRef(Type).contains(')'))
     Type = resultType(F);
@@ -126,7 +142,7 @@ private:
   };
 
   void makeObjects();
-  const Value *objectBehind(const Accessor &A) const;
+  const Value *objectBehind(const Value *Object) const;
   std::set<std::string> namesTested(const CallBase &At, const Value *Object);
   void addTest(const CallBase &Test, const Rule &Row, const Value *Name,
                const CallBase &At, std::set<std::string> &Out);
@@ -192,10 +208,9 @@ void ObjectFinder::makeObjects() {
     }
 }
 
-/// The object that \p A takes a value out of: an accessor can return an object
-/// that has accessors too.
-const Value *ObjectFinder::objectBehind(const Accessor &A) const {
-  const Value *Object = objectOf(*A.Call, *A.Row);
+/// The object that accessors have taken \p Object out of: an accessor can
+/// return an object that has accessors too.
+const Value *ObjectFinder::objectBehind(const Value *Object) const {
   while (const auto *Outer = dyn_cast_or_null<CallBase>(Object)) {
     const Rule *Row = Rules.match(*Outer);
     if (!Row || Row->Kind != Rule::Accessor)
@@ -322,7 +337,8 @@ ObjectFinder::Numbers ObjectFinder::lastAssigned(const Value *Local,
       return std::nullopt;
     if (Call.arg_size() == 1)
       return true; // A new object, without a value.
-    Numbers From = lastAssigned(Call.getArgOperand(1), Call, Depth + 1);
+    Numbers From =
+        lastAssigned(objectBehind(Call.getArgOperand(1)), Call, Depth + 1);
     if (!From)
       return std::nullopt;
     Found.insert(From->begin(), From->end());
@@ -415,7 +431,7 @@ void ObjectFinder::run() {
     return;
   makeObjects();
   for (const Accessor &A : Accessors) {
-    const Value *Object = objectBehind(A);
+    const Value *Object = objectBehind(objectOf(*A.Call, *A.Row));
     std::string Type = accessedType(*A.Call->getCalledFunction(), *A.Row);
     SmallVector<Value *, 1> Values;
     if (!isObjectType(Type, Rules))

@@ -44,12 +44,13 @@ const Texts::Callee &Texts::calleeOf(const Function &F) {
   if (C)
     return *C;
   C = std::make_unique<Callee>();
-  C->Name = qualifiedName(F.getName());
+  const StringRef Mangled = nameOfOriginal(F);
+  C->Name = qualifiedName(Mangled);
   for (StringRef Type : parameterTypes(F)) {
     C->Types.push_back(plainType(Type));
     C->Constant.push_back(Type.ends_with(" const&"));
   }
-  C->ConstMethod = StringRef(demangle(F.getName())).ends_with(") const");
+  C->ConstMethod = StringRef(demangle(Mangled)).ends_with(") const");
   return *C;
 }
 

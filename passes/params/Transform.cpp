@@ -453,8 +453,18 @@ static std::optional<Transform> applyFma(Transform T, const CallBase &Fma,
   return withVariable(std::move(T), "+", C, /*First=*/false, Name);
 }
 
+/// \p T, which only narrows, without that.
+static Transform withoutNarrowing(Transform T) {
+  Transform Of = T.Inner->Of;
+  Of.Width = T.Width;
+  return Of;
+}
+
 std::optional<Transform> apply(Transform T, const Instruction &I,
                                const Value *V, int Square, NameOf Name) {
+  // Who keeps a parameter in a smaller integer knows that it fits.
+  if (T.isNarrowing())
+    T = withoutNarrowing(std::move(T));
   if (I.getOpcode() == Instruction::FNeg) {
     T.multiply(-1);
     return T;

@@ -99,6 +99,7 @@ private:
   void enterResult(CallBase &Call);
   bool isSeenThrough(const CallBase &Call);
   bool isCounting(const Instruction &I);
+  bool isLeftBehind(const Instruction &I);
   void enterTouched(CallBase &Call);
   void enterVirtualCall(const CallBase &Call);
   void enterThrowers(CallBase &Call);
@@ -159,8 +160,9 @@ bool Slicer::isOfResult(Why Because) const {
 }
 
 void Slicer::enter(Instruction *I, unsigned char Reasons, Why Because) {
-  // What a lock or a reference count keeps is no value of the robot.
-  if (Because == Why::Writes && isCounting(*I))
+  // What a lock or a reference count keeps is no value of the robot, and nobody
+  // sees what an object is left with.
+  if (Because == Why::Writes && (isCounting(*I) || isLeftBehind(*I)))
     return;
   unsigned char &Have = Seen[I];
   const unsigned char OfCalls = isOfResult(Because) ? 0 : Called;
@@ -187,6 +189,14 @@ void Slicer::enterDecider(Instruction *Predicate, Why Because) {
   // code that releases an object.
   bool IsGiven = !handlerAskedFor(*Predicate) && !isCounting(*Predicate);
   enter(Predicate, IsGiven ? Gives : Runs, Because);
+}
+
+/// True if \p I stores what a destructor of a library leaves in its object.
+bool Slicer::isLeftBehind(const Instruction &I) {
+  const DILocation *Loc = I.getDebugLoc();
+  const DISubprogram *F = Loc ? Loc->getScope()->getSubprogram() : nullptr;
+  return F && isa<StoreInst>(I) && !Sources.has(Loc) &&
+         isDestructor(F->getLinkageName());
 }
 
 bool Slicer::isCounting(const Instruction &I) {
@@ -269,11 +279,25 @@ void Slicer::enterMerge(const PHINode &Phi) {
   }
 }
 
+/// True if the contents of \p Arg matter for the result of \p Call. Of what
+/// makes a publisher, only the topic does. The value of a parameter depends on
+/// its name and default, not on what else the program keeps in its node.
+static bool isUsed(const Value *Arg, const CallBase &Call, const Rule *Row) {
+  if (!Row)
+    return true;
+  if (Row->Kind == Rule::Topic)
+    return Arg == argument(Call, *Row, Row->Name);
+  return Row->Kind != Rule::Read || Row->Resolve != "node" ||
+         Arg != objectOf(Call, *Row);
+}
+
 /// The arguments of \p Call matter.
 void Slicer::enterArguments(const CallBase &Call) {
+  const Rule *Row = Rules.match(Call);
   for (const Use &Arg : Call.args()) {
     enterValue(Arg);
-    if (Arg->getType()->isPointerTy() && !Writes.replaces(Call, Arg))
+    if (Arg->getType()->isPointerTy() && !Writes.replaces(Call, Arg) &&
+        isUsed(Arg, Call, Row))
       enterMemory(Arg, Call);
   }
 }
@@ -366,7 +390,7 @@ void Slicer::enterDerived(const Value *Pointer, bool IntoCallees) {
              (isa<MemSetInst>(I) && !Settled.contains(I)))
       enter(I, Gives, Why::Writes);
     else if (Call && !isa<IntrinsicInst>(I) && !Settled.contains(I) &&
-             !endsLife(*Call)) {
+             !Calls.onlyDestroys(*Call)) {
       enter(I, Touches, Why::Writes);
       for (Function *Callee : IntoCallees && Call->isArgOperand(&U)
                                   ? Calls.callees(*Call)

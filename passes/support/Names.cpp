@@ -71,6 +71,10 @@ std::string qualifiedName(StringRef Mangled) {
   return withoutTemplateArguments(Scope.empty() ? Base : Scope + "::" + Base);
 }
 
+StringRef nameOfOriginal(const Function &F) {
+  return F.getName().split(CopyMark).first;
+}
+
 StringRef linkageName(const Function &F) {
   const DISubprogram *SP = F.getSubprogram();
   StringRef Linkage = SP ? SP->getLinkageName() : "";
@@ -112,7 +116,7 @@ std::string functionNameFor(const DILocation &Loc) {
 }
 
 SmallVector<std::string, 4> parameterTypes(const Function &F) {
-  return parameterTypes(F.getName());
+  return parameterTypes(nameOfOriginal(F));
 }
 
 SmallVector<std::string, 4> parameterTypes(StringRef Mangled) {
@@ -248,7 +252,7 @@ SmallBitVector constArguments(const Function &F) {
   return Const;
 }
 
-static bool isDestructor(StringRef Mangled) {
+bool isDestructor(StringRef Mangled) {
   ItaniumPartialDemangler Demangler;
   return (Mangled.ends_with("D0Ev") || Mangled.ends_with("D1Ev") ||
           Mangled.ends_with("D2Ev")) &&

@@ -12,6 +12,13 @@
 
 namespace tpc {
 
+/// Between the name of a function and the number of a copy of it that serves
+/// one call.
+inline constexpr llvm::StringLiteral CopyMark = ".tpc.";
+
+/// The mangled name of \p F, or of the function that it is a copy of.
+llvm::StringRef nameOfOriginal(const llvm::Function &F);
+
 /// The mangled name of \p F in the source: a copy of a function has a name of
 /// its own in the code.
 llvm::StringRef linkageName(const llvm::Function &F);
@@ -94,6 +101,9 @@ bool givesMemoryBack(llvm::StringRef Mangled);
 /// True if the name of \p F, without its scopes, says that the thread waits in
 /// it: for a time, for another thread, or for callbacks that it runs.
 bool waitsByName(const llvm::Function &F);
+
+/// True for the mangled names of destructors.
+bool isDestructor(llvm::StringRef Mangled);
 
 /// True if \p Call calls a function without a body that ends the life of its
 /// argument: nobody reads what it writes there.

@@ -8,13 +8,9 @@ from __future__ import annotations
 
 import ast
 import json
-import operator
 import subprocess
-from collections import defaultdict
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -23,15 +19,12 @@ from pytpc.recording.events import Events
 from pytpc.ros.node_start import RUN
 from pytpc.static.static_info import StaticInfo
 from ros2_graph import PYTHON, run_python
-from suite.expectations import RCLPY_PACKAGE, differences, load, nodes
+from suite.expectations import RCLPY_PACKAGE, nodes
 from suite.report import analyse_python
+from suite.reported import not_as_listed, raw
 
 HOST = Path(__file__).parents[1] / "suite/rclpy_host.py"
 INPUT = [-6.0, -2.0, 1.0, 3.0, 6.0, 9.0]
-RELATIONS = {
-    **{"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge},
-    **{"==": operator.eq, "!=": operator.ne},
-}
 NODES = nodes(RCLPY_PACKAGE)
 
 
@@ -44,11 +37,6 @@ class Runs:
     events: Events
     static: StaticInfo
     left_out: dict[str, str]
-
-
-def raw(node: str) -> dict[str, Any]:
-    data: dict[str, Any] = json.loads((RCLPY_PACKAGE / f"nodes/{node}.json").read_text("utf-8"))
-    return data
 
 
 def missing(names: list[str]) -> dict[str, str]:
@@ -81,7 +69,7 @@ def runs(domain: dict[str, str], tmp_path_factory: pytest.TempPathFactory) -> Ru
     static = analyse_python(folder, RCLPY_PACKAGE)
     left_out = missing(NODES)
     able = [node for node in NODES if node not in left_out]
-    lists = {node: raw(node) for node in able}
+    lists = {node: raw(node, RCLPY_PACKAGE) for node in able}
     config = folder / "config.json"
     config.write_text(
         json.dumps(
@@ -114,7 +102,7 @@ def runs(domain: dict[str, str], tmp_path_factory: pytest.TempPathFactory) -> Ru
 def test_publishes_the_same(runs: Runs, node: str) -> None:
     if node in runs.left_out:
         pytest.skip(f"not installed for ROS 2: {runs.left_out[node]}")
-    for topic, count in raw(node)["messages"].items():
+    for topic, count in raw(node, RCLPY_PACKAGE)["messages"].items():
         name = f"/{topic[3:]}" if topic.startswith("../") else f"/{node}/{topic}"
         assert len(runs.plain[name]) == count, runs.plain[name]
         assert runs.reporting[name] == runs.plain[name]
@@ -124,27 +112,5 @@ def test_publishes_the_same(runs: Runs, node: str) -> None:
 def test_reports_what_the_list_says(runs: Runs, node: str) -> None:
     if node in runs.left_out:
         pytest.skip(f"not installed for ROS 2: {runs.left_out[node]}")
-    assert list(_not_as_listed(runs, node)) == []
-
-
-def _not_as_listed(runs: Runs, node: str) -> Iterator[str]:
-    """What the reports of a node's comparisons are not as its list says."""
     (unit,) = (each for each in runs.static.units if each.link_unit == node)
-    rows = defaultdict(list)
-    for at, key in enumerate(runs.events.key):
-        rows[runs.events.keys[key]].append(at)
-    items = raw(node)["expect"]
-    for entry, item in zip(load(node, RCLPY_PACKAGE).expect, items, strict=True):
-        (found,) = (each for each in unit.comparisons if not differences(entry, each))
-        mine = rows[found.key]
-        if not mine:
-            yield f"{entry} reports nothing"
-        if "threshold" not in item:
-            continue
-        holds = RELATIONS[found.relation]
-        for at in mine:
-            sample, threshold = float(runs.events.cmp[at]), float(runs.events.thresh[at])
-            if threshold != pytest.approx(item["threshold"], rel=1e-12):
-                yield f"{entry} reports {threshold}"
-            if bool(runs.events.result[at]) != holds(sample, threshold):
-                yield f"{entry}: {sample} with {threshold} is {runs.events.result[at]}"
+    assert list(not_as_listed(runs.events, unit, RCLPY_PACKAGE)) == []

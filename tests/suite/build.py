@@ -26,15 +26,19 @@ class Suite:
 
     result: BuildResult
     folder: Path
+    package: Path = PACKAGE
 
     @property
     def build(self) -> Path:
         """CMake's build folder of the package."""
-        return self.result.bases.build / PACKAGE.name
+        return self.result.bases.build / self.package.name
 
 
 def build_suite(
-    folder: Path, build_type: str = "RelWithDebInfo", cmake_args: tuple[str, ...] = ()
+    folder: Path,
+    build_type: str = "RelWithDebInfo",
+    cmake_args: tuple[str, ...] = (),
+    package: Path = PACKAGE,
 ) -> Suite:
     """Build the package with the passes in a workspace of its own.
 
@@ -42,9 +46,9 @@ def build_suite(
         BuildError: it does not build.
     """
     (folder / "src").mkdir(parents=True)
-    (folder / "src" / PACKAGE.name).symlink_to(PACKAGE)
+    (folder / "src" / package.name).symlink_to(package)
     result = build_workspace(folder, BuildOptions(build_type=build_type, cmake_args=cmake_args))
-    return Suite(result, folder)
+    return Suite(result, folder, package)
 
 
 def link_commands(suite: Suite) -> dict[str, list[str]]:

@@ -26,6 +26,7 @@ from pytpc.static.link_unit import Comparison
 PACKAGE = Path(__file__).parents[2] / "examples/threshold_nodes"
 PYTHON_PACKAGE = PACKAGE.with_name("python_nodes")
 RCLPY_PACKAGE = PACKAGE.with_name("rclpy_nodes")
+RCLCPP_PACKAGE = PACKAGE.with_name("rclcpp_nodes")
 # The lists say which operator stands in the source; static information has six relations.
 _EQUALITIES = {"is": "==", "is not": "!=", "in": "==", "not in": "!="}
 

@@ -7,3 +7,4 @@ PYTHON_KNOWN: dict[str, str] = {}
 
 # The same for those of ROS 2.
 RCLPY_KNOWN: dict[str, str] = {}
+RCLCPP_KNOWN: dict[str, str] = {}

@@ -1,7 +1,7 @@
 """Prints what the analysis finds of what a reader finds, node by node: ``tools/suite-report``.
 
 With ``--python`` it is the suite of Python nodes, with ``--rclpy`` that of ROS 2, which need not be
-built.
+built; with ``--rclcpp`` that of C++ nodes of ROS 2, where rclcpp is installed.
 """
 
 from __future__ import annotations
@@ -16,7 +16,16 @@ from pathlib import Path
 from pytpc.base.errors import RunError, TpcError
 from pytpc.static.static_info import StaticInfo
 from suite.build import build_suite
-from suite.expectations import PYTHON_PACKAGE, RCLPY_PACKAGE, Verdict, judge, load, nodes
+from suite.expectations import (
+    PACKAGE,
+    PYTHON_PACKAGE,
+    RCLCPP_PACKAGE,
+    RCLPY_PACKAGE,
+    Verdict,
+    judge,
+    load,
+    nodes,
+)
 
 
 def judge_all(static: StaticInfo, package: Path | None = None) -> list[Verdict]:
@@ -79,12 +88,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="suite-report", description=__doc__)
     parser.add_argument("--python", action="store_true", help="the suite of Python nodes")
     parser.add_argument("--rclpy", action="store_true", help="the suite of nodes of rclpy")
+    parser.add_argument("--rclcpp", action="store_true", help="the suite of nodes of rclcpp")
     parser.add_argument("--static", type=Path, help="static information of an earlier build")
     parser.add_argument("--build-type", default="RelWithDebInfo", help="CMAKE_BUILD_TYPE")
     parser.add_argument("--wrong", action="store_true", help="only the nodes that are not right")
     arguments = parser.parse_args()
     python = PYTHON_PACKAGE if arguments.python else None
     package = RCLPY_PACKAGE if arguments.rclpy else python
+    compiled = RCLCPP_PACKAGE if arguments.rclcpp else PACKAGE
     try:
         if arguments.static:
             static = StaticInfo.load(arguments.static)
@@ -94,11 +105,13 @@ def main() -> None:
                 static = (
                     analyse_python(where, package)
                     if package is not None
-                    else build_suite(where / "ws", arguments.build_type).result.static
+                    else build_suite(
+                        where / "ws", arguments.build_type, package=compiled
+                    ).result.static
                 )
     except TpcError as error:
         raise SystemExit(f"error: {error}") from error
-    verdicts = judge_all(static, package)
+    verdicts = judge_all(static, package or compiled)
     print(table(verdicts, only_wrong=arguments.wrong))
     raise SystemExit(any(not verdict.is_right for verdict in verdicts))
 

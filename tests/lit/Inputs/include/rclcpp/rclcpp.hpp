@@ -36,17 +36,30 @@ struct SetParametersResult {
 
 namespace rclcpp {
 
-enum ParameterType : uint8_t { PARAMETER_BOOL = 1, PARAMETER_DOUBLE = 3 };
+enum ParameterType : uint8_t {
+  PARAMETER_BOOL = 1,
+  PARAMETER_INTEGER = 2,
+  PARAMETER_DOUBLE = 3
+};
 
 class ParameterValue {
 public:
   ParameterValue();
+  ParameterValue(const ParameterValue &Other);
   explicit ParameterValue(bool Value);
   explicit ParameterValue(int64_t Value);
   explicit ParameterValue(double Value);
   explicit ParameterValue(const std::string &Value);
   template <typename T> const T &get() const {
     return *static_cast<const T *>(Data);
+  }
+  template <ParameterType N>
+  std::enable_if_t<N == PARAMETER_INTEGER, const int64_t &> get() const {
+    return get<int64_t>();
+  }
+  template <ParameterType N>
+  std::enable_if_t<N == PARAMETER_DOUBLE, const double &> get() const {
+    return get<double>();
   }
 
 private:
@@ -68,6 +81,9 @@ public:
   const std::vector<double> &as_double_array() const;
   template <typename T> decltype(auto) get_value() const {
     return Value.get<T>();
+  }
+  template <ParameterType N> decltype(auto) get_value() const {
+    return Value.get<N>();
   }
 
 private:
@@ -120,6 +136,16 @@ public:
   QoS(size_t Depth);
 };
 
+class Clock;
+
+class Logger {
+public:
+  void log(const char *Text) const;
+
+private:
+  std::shared_ptr<std::string> Name;
+};
+
 /// What ROS 2 publishes about a subscription itself.
 namespace topic_statistics {
 class SubscriptionTopicStatistics;
@@ -130,6 +156,19 @@ public:
   virtual ~Publisher() = default;
   template <typename T>
   std::enable_if_t<std::is_same<T, M>::value> publish(const T &Message);
+};
+
+class SerializedMessage {
+public:
+  SerializedMessage();
+
+private:
+  size_t Length = 0;
+};
+
+class GenericPublisher {
+public:
+  void publish(const SerializedMessage &Message);
 };
 
 template <typename S> class Client {
@@ -177,6 +216,8 @@ public:
   const char *get_fully_qualified_name() const;
   bool has_parameter(const std::string &Name) const;
   Time now() const;
+  Logger get_logger() const;
+  std::shared_ptr<Clock> get_clock();
   explicit Node(const std::string &Name);
   virtual ~Node();
   const ParameterValue &
@@ -185,21 +226,21 @@ public:
                         rcl_interfaces::msg::ParameterDescriptor(),
                     bool IgnoreOverride = false);
   template <typename T>
-  auto declare_parameter(
-      const std::string &Name, const T &Default,
-      const rcl_interfaces::msg::ParameterDescriptor &Descriptor =
-          rcl_interfaces::msg::ParameterDescriptor(),
-      bool IgnoreOverride = false) {
+  auto
+  declare_parameter(const std::string &Name, const T &Default,
+                    const rcl_interfaces::msg::ParameterDescriptor &Descriptor =
+                        rcl_interfaces::msg::ParameterDescriptor(),
+                    bool IgnoreOverride = false) {
     return declare_parameter(Name, ParameterValue(Default), Descriptor,
                              IgnoreOverride)
         .get<T>();
   }
   template <typename T>
-  auto declare_parameter(
-      const std::string &Name,
-      const rcl_interfaces::msg::ParameterDescriptor &Descriptor =
-          rcl_interfaces::msg::ParameterDescriptor(),
-      bool IgnoreOverride = false) {
+  auto
+  declare_parameter(const std::string &Name,
+                    const rcl_interfaces::msg::ParameterDescriptor &Descriptor =
+                        rcl_interfaces::msg::ParameterDescriptor(),
+                    bool IgnoreOverride = false) {
     return declare_parameter(Name, ParameterValue(), Descriptor, IgnoreOverride)
         .get<T>();
   }
@@ -226,6 +267,9 @@ public:
                                                  const QoS &) {
     return std::make_shared<Publisher<M>>();
   }
+  std::shared_ptr<GenericPublisher>
+  create_generic_publisher(const std::string &Topic, const std::string &Type,
+                           const QoS &);
 };
 
 class ParameterEventHandler {
