@@ -34,9 +34,9 @@ _KNOWN_NS = 4_000_000_000
 _JOINED_NS = 20_000_000
 _SLOWEST = 2.0
 _ACKNOWLEDGED_S = 1.0
-# So long the last messages have to arrive: what the process has not sent again by then is lost. ROS
-# itself gives a process five seconds to end.
-_LAST_ACKNOWLEDGED_S = 3.0
+# So long the last messages have to arrive: what the process has not sent again by then is lost, and
+# Fast DDS asks every three seconds what is missing. ROS gives a process five seconds to end.
+_LAST_ACKNOWLEDGED_S = 4.0
 # When the process ends, it spares slow subscribers for this long.
 _LAST_NS = 2_000_000_000
 
