@@ -29,8 +29,8 @@ _DISCOVERY_NS = 200_000_000
 _GATHER_NS = 1_000_000_000
 # Discovery, and the connection to those discovered, may take more than three seconds.
 _KNOWN_NS = 4_000_000_000
-# To join the graph usually takes less than this. Where it takes longer, all of the above gets as many
-# times longer, at most twice.
+# To join the graph usually takes less than this. Where it takes longer, all of the above gets as
+# many times longer, at most twice.
 _JOINED_NS = 20_000_000
 _SLOWEST = 2.0
 _ACKNOWLEDGED_S = 1.0
