@@ -191,12 +191,24 @@ void Slicer::enterDecider(Instruction *Predicate, Why Because) {
   enter(Predicate, IsGiven ? Gives : Runs, Because);
 }
 
-/// True if \p I stores what a destructor of a library leaves in its object.
-bool Slicer::isLeftBehind(const Instruction &I) {
+/// The destructor of a library that \p I is in, also where it was inlined; null
+/// if it is in none.
+static const DISubprogram *destructorAround(const Instruction &I) {
   const DILocation *Loc = I.getDebugLoc();
   const DISubprogram *F = Loc ? Loc->getScope()->getSubprogram() : nullptr;
-  return F && isa<StoreInst>(I) && !Sources.has(Loc) &&
-         isDestructor(F->getLinkageName());
+  return F && isDestructor(F->getLinkageName()) ? F : nullptr;
+}
+
+/// True if \p I stores what a destructor of a library leaves in its object.
+/// What a pointer in that object leads to is not of the object.
+bool Slicer::isLeftBehind(const Instruction &I) {
+  const auto *Store = dyn_cast<StoreInst>(&I);
+  const DISubprogram *F = Store ? destructorAround(I) : nullptr;
+  if (!F || Sources.has(I.getDebugLoc()))
+    return false;
+  const Value *Object = getUnderlyingObject(Store->getPointerOperand());
+  const auto *Load = dyn_cast<LoadInst>(Object);
+  return !isa<GlobalValue>(Object) && !(Load && destructorAround(*Load) == F);
 }
 
 bool Slicer::isCounting(const Instruction &I) {

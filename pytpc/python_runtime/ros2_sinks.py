@@ -32,14 +32,14 @@ _DISCOVERY_NS = 200_000_000
 _GATHER_NS = 1_000_000_000
 # Discovery, and the connection to those discovered, may take more than three seconds.
 _KNOWN_NS = 4_000_000_000
-# To join the graph usually takes less than this. Where it takes longer, all of the above gets as many
-# times longer, at most twice.
+# To join the graph usually takes less than this. Where it takes longer, all of the above gets as
+# many times longer, at most twice.
 _JOINED_NS = 20_000_000
 _SLOWEST = 2.0
 _ACKNOWLEDGED_S = 1.0
-# So long the last messages have to arrive: what the process has not sent again by then is lost. ROS
-# itself gives a process five seconds to end.
-_LAST_ACKNOWLEDGED_S = 3.0
+# So long the last messages have to arrive: what the process has not sent again by then is lost, and
+# Fast DDS asks every three seconds what is missing. ROS gives a process five seconds to end.
+_LAST_ACKNOWLEDGED_S = 4.0
 # When the process ends, it spares slow subscribers for this long.
 _LAST_NS = 2_000_000_000
 # A recorder may start later: what keys belong to which node is told again.

@@ -43,8 +43,9 @@ constexpr size_t KeptLogs = 1000;
 constexpr uint32_t UnseenMessages = 500;
 constexpr int64_t SeenNs = 100 * Ms;
 /// How long the subscribers get to acknowledge the last messages: what was not
-/// sent again by then is lost. ROS itself gives a process five seconds to end.
-constexpr int64_t LastNs = 3 * Second;
+/// sent again by then is lost, and Fast DDS asks every three seconds what is
+/// missing. ROS itself gives a process five seconds to end.
+constexpr int64_t LastNs = 4 * Second;
 
 class RclChannel final : public Channel {
 public:
@@ -210,9 +211,11 @@ void RclChannel::poll(Outbox &From) {
 
 void RclChannel::end(Outbox &From) {
   const RclGraph &Graph = RclGraph::of();
-  if (Advertised && Graph.isUp() && !Graph.isForked() &&
-      sendWaiting(From, true))
-    isOk(rcl_publisher_wait_for_all_acked(&Publisher, LastNs));
+  if (!Advertised || !IsMade || !Graph.isUp() || Graph.isForked())
+    return;
+  sendWaiting(From, true);
+  // Also for what poll() has sent a moment ago.
+  isOk(rcl_publisher_wait_for_all_acked(&Publisher, LastNs));
 }
 
 void RclChannel::finish() {

@@ -41,6 +41,8 @@ void log_read(char *, const void *Handle, const void *Name, bool) {
 }
 #endif
 
+rclcpp::ParameterValue::ParameterValue(const ParameterValue &) = default;
+
 struct Parameters : rclcpp::node_interfaces::NodeParametersInterface {
   const rclcpp::ParameterValue &
   declare_parameter(const std::string &, const rclcpp::ParameterValue &V,
