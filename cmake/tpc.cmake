@@ -260,6 +260,11 @@ macro(_tpc_instrument)
     _tpc_add_plugin_option("-tpc-constants" "${_tpc_on}")
   endif()
   # CMake puts the options before the libraries.
+  if("$ENV{ROS_VERSION}" STREQUAL "2")
+    _tpc_read_flags(program _tpc_program_flags)
+    _tpc_add_link_options("${_tpc_program_flags}"
+      "$<AND:${_tpc_on},$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>>")
+  endif()
   foreach(_tpc_kind IN ITEMS log last)
     _tpc_read_flags(${_tpc_kind} _tpc_last_flags)
     _tpc_add_link_options("${_tpc_last_flags}" "${_tpc_on}")
