@@ -1,6 +1,5 @@
 // RUN: %compile -O2 %s -o %t.o
-// RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>'
-// %t.o | FileCheck %s
+// RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
 // What owners of objects call to end their life writes nothing that is
 // published, also where it is a virtual destructor that is not known.

@@ -1,6 +1,5 @@
 // RUN: %compile -O2 %s -o %t.o
-// RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>'
-// %t.o | FileCheck %s
+// RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
 // A parameter of 64 bits that is kept in a smaller integer fits: what is
 // computed with it afterwards is computed with the parameter.

@@ -1,7 +1,7 @@
 // RUN: %compile -O2 %s -o %t.o
-// RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-param-calls>' %t.o |
-// FileCheck %s RUN: %compile -O0 %s -o %t.0.o RUN: %opt -disable-output
-// -passes='tpc-prepare,print<tpc-param-calls>' %t.0.o | FileCheck %s
+// RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-param-calls>' %t.o | FileCheck %s
+// RUN: %compile -O0 %s -o %t.0.o
+// RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-param-calls>' %t.0.o | FileCheck %s
 //
 // Helpers that declare and read a parameter by a name that they are handed, one
 // inside the other: each call has its own name, as has each copy of a helper.

@@ -1,7 +1,7 @@
 // RUN: %compile -O2 %s -o %t.o
-// RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>'
-// %t.o | FileCheck %s RUN: %compile -O0 %s -o %t.0.o RUN: %opt -disable-output
-// -passes='tpc-prepare,print<tpc-gather-results>' %t.0.o | FileCheck %s
+// RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
+// RUN: %compile -O0 %s -o %t.0.o
+// RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.0.o | FileCheck %s
 //
 // Log output is not exposed: a logger that is released ends no node, although
 // shared pointers release both by the same function, and asking the node for
@@ -24,8 +24,7 @@ public:
       get_logger().log("noted");
     if (V > Timed)
       get_clock();
-    // CHECK-DAG: parameter 'limit' relation > as x distance 1 {{.*}} at
-    // [[#@LINE+1]]:11
+    // CHECK-DAG: parameter 'limit' relation > as x distance 1 {{.*}} at [[#@LINE+1]]:11
     if (V > Limit)
       Out->publish(rclcpp::SerializedMessage());
   }

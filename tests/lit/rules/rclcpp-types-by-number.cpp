@@ -1,9 +1,7 @@
 // RUN: %compile -O2 %s -o %t.o
-// RUN: %opt -disable-output
-// -passes='tpc-prepare,print<tpc-param-calls>,print<tpc-gather-results>' %t.o |
-// FileCheck %s RUN: %compile -O0 %s -o %t.0.o RUN: %opt -disable-output
-// -passes='tpc-prepare,print<tpc-param-calls>,print<tpc-gather-results>' %t.0.o
-// | FileCheck %s
+// RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-param-calls>,print<tpc-gather-results>' %t.o | FileCheck %s
+// RUN: %compile -O0 %s -o %t.0.o
+// RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-param-calls>,print<tpc-gather-results>' %t.0.o | FileCheck %s
 //
 // get_value and get may have the number of a type instead of the type, and a
 // ParameterValue may be a copy of that of a parameter.
@@ -23,12 +21,10 @@ public:
   }
   // CHECK-DAG: comparisons of {{.*}}: 2
   void step(double V, int64_t N) {
-    // CHECK-DAG: parameter 'most' relation < as x distance 1 {{.*}} at
-    // [[#@LINE+1]]:11
+    // CHECK-DAG: parameter 'most' relation < as x distance 1 {{.*}} at [[#@LINE+1]]:11
     if (N < Most)
       Out->publish(std_msgs::msg::Number());
-    // CHECK-DAG: parameter 'far' relation > as x distance 1 {{.*}} at
-    // [[#@LINE+1]]:11
+    // CHECK-DAG: parameter 'far' relation > as x distance 1 {{.*}} at [[#@LINE+1]]:11
     if (V > Far)
       Out->publish(std_msgs::msg::Number());
   }
