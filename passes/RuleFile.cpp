@@ -76,7 +76,7 @@ static constexpr StringLiteral TextKeys[] = {"relation"};
 static constexpr StringLiteral HeldKeys[] = {"relation", "value", "per_second",
                                              "nanoseconds"};
 static constexpr StringLiteral AccessorKeys[] = {"type"};
-static constexpr StringLiteral CallbackKeys[] = {"callbacks", "name"};
+static constexpr StringLiteral CallbackKeys[] = {"answer", "callbacks", "name"};
 static constexpr StringLiteral CallbackRequired[] = {"callbacks"};
 
 static const Section Sections[] = {
@@ -235,6 +235,8 @@ Error Reader::field(StringRef Key, const json::Value &V, StringRef Place,
     return text(V, Place, R.Relation);
   if (Key == "type")
     return text(V, Place, R.Type);
+  if (Key == "answer")
+    return text(V, Place, R.Answer);
   if (Key == "slot")
     return number(V, Place, R.Slot);
   if (Key == "symbol")

@@ -94,6 +94,10 @@ struct Rule {
   /// The arguments that are functions. If Name is set, they are called with an
   /// object that holds this parameter; otherwise what they return is seen.
   std::vector<unsigned> Callbacks;
+  /// What the name of a class contains to which such a function gets a smart
+  /// pointer, and whose contents are seen: the answer of a service. Empty if
+  /// there is none.
+  std::string Answer;
   /// For a virtual function whose class the debug information may lack: its
   /// number in the table of virtual functions, and its mangled name.
   std::optional<unsigned> Slot;

@@ -191,7 +191,7 @@ ObjectFinder::ObjectFinder(Module &M, ModuleAnalysisManager &AM, Texts &Known,
     std::string Name = Known.nameOf(Call, Row);
     for (unsigned N : Row.Callbacks)
       if (const Value *Argument = argument(Call, Row, N))
-        for (const Function *F : calledBackBy(Argument, Sources)) {
+        for (const Function *F : calledBackBy(*Argument, Call, Sources)) {
           auto [It, New] = CalledFor.try_emplace(F, Name);
           if (!New && It->second != Name)
             It->second = DynamicName;

@@ -1,6 +1,8 @@
 //===- Callbacks.cpp ------------------------------------------------------===//
 #include "params/Callbacks.h"
 
+#include "support/DebugTypes.h"
+
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Operator.h"
 
@@ -92,9 +94,34 @@ SmallSetVector<Function *, 2> CallbackSearch::from(const Value *Callback) {
   return std::move(Found);
 }
 
-SmallSetVector<Function *, 2> calledBackBy(const Value *Callback,
+/// The call operators of the lambdas that are template arguments of the
+/// function that \p Call calls: it may get them by reference, as they are.
+static SmallSetVector<Function *, 2> lambdasOf(const CallBase &Call,
+                                               UserSources &Sources) {
+  SmallSetVector<Function *, 2> Found;
+  const Function *Callee = Call.getCalledFunction();
+  const DISubprogram *SP = Callee ? Callee->getSubprogram() : nullptr;
+  SmallPtrSet<const DIScope *, 4> Types;
+  if (SP)
+    for (const DITemplateParameter *P : SP->getTemplateParams())
+      if (const auto *Class = dyn_cast_or_null<DICompositeType>(
+              DebugTypes::plain(P ? P->getType() : nullptr)))
+        Types.insert(Class);
+  if (Types.empty())
+    return Found;
+  for (const Function &F : *Call.getModule())
+    if (const DISubprogram *Own = F.getSubprogram();
+        Own && Own->getName() == "operator()" &&
+        Types.contains(Own->getScope()) && Sources.has(F))
+      Found.insert(const_cast<Function *>(&F));
+  return Found;
+}
+
+SmallSetVector<Function *, 2> calledBackBy(const Value &Callback,
+                                           const CallBase &Call,
                                            UserSources &Sources) {
-  return CallbackSearch(Sources).from(Callback);
+  SmallSetVector<Function *, 2> Found = CallbackSearch(Sources).from(&Callback);
+  return Found.empty() ? lambdasOf(Call, Sources) : Found;
 }
 
 } // namespace tpc

@@ -16,10 +16,12 @@
 namespace tpc {
 
 /// The functions in user code that the function object or pointer \p Callback,
-/// an argument, calls. The first of them on each way through library code
-/// counts.
+/// an argument of \p Call, calls. The first of them on each way through library
+/// code counts. If none is found, those of the lambdas for whose types the
+/// called template was made.
 llvm::SmallSetVector<llvm::Function *, 2>
-calledBackBy(const llvm::Value *Callback, UserSources &Sources);
+calledBackBy(const llvm::Value &Callback, const llvm::CallBase &Call,
+             UserSources &Sources);
 
 } // namespace tpc
 

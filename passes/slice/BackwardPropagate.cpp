@@ -89,6 +89,7 @@ private:
   void enter(Instruction *I, unsigned char Reasons, Why Because);
   void enterDecider(Instruction *Predicate, Why Because);
   void process(const Item &It);
+  bool isLeftByOwner(const Function &F);
   void enterControllers(const Instruction &I);
   void enterOperands(Instruction &I);
   void enterValue(const Value *V);
@@ -105,6 +106,7 @@ private:
   void enterThrowers(CallBase &Call);
   void enterDerived(const Value *Pointer, bool IntoCallees = false);
   void enterContents(const Value *Pointer, Instruction &At, bool IsOfCaller);
+  void enterLoadsOf(const Value *Pointer);
   void enterTarget(const Value *Pointer, Instruction &At);
   bool isTooLate(const Instruction &Write) const;
   void enterPublisher(const Value *Object);
@@ -161,7 +163,7 @@ bool Slicer::isOfResult(Why Because) const {
 
 void Slicer::enter(Instruction *I, unsigned char Reasons, Why Because) {
   // What a lock or a reference count keeps is no value of the robot, and nobody
-  // sees what an object is left with.
+  // sees what a smart pointer is left with.
   if (Because == Why::Writes && (isCounting(*I) || isLeftBehind(*I)))
     return;
   unsigned char &Have = Seen[I];
@@ -191,24 +193,14 @@ void Slicer::enterDecider(Instruction *Predicate, Why Because) {
   enter(Predicate, IsGiven ? Gives : Runs, Because);
 }
 
-/// The destructor of a library that \p I is in, also where it was inlined; null
-/// if it is in none.
-static const DISubprogram *destructorAround(const Instruction &I) {
+/// True if \p I stores the null that the destructor of a smart pointer leaves
+/// in it.
+bool Slicer::isLeftBehind(const Instruction &I) {
   const DILocation *Loc = I.getDebugLoc();
   const DISubprogram *F = Loc ? Loc->getScope()->getSubprogram() : nullptr;
-  return F && isDestructor(F->getLinkageName()) ? F : nullptr;
-}
-
-/// True if \p I stores what a destructor of a library leaves in its object.
-/// What a pointer in that object leads to is not of the object.
-bool Slicer::isLeftBehind(const Instruction &I) {
   const auto *Store = dyn_cast<StoreInst>(&I);
-  const DISubprogram *F = Store ? destructorAround(I) : nullptr;
-  if (!F || Sources.has(I.getDebugLoc()))
-    return false;
-  const Value *Object = getUnderlyingObject(Store->getPointerOperand());
-  const auto *Load = dyn_cast<LoadInst>(Object);
-  return !isa<GlobalValue>(Object) && !(Load && destructorAround(*Load) == F);
+  return F && Store && isa<ConstantPointerNull>(Store->getValueOperand()) &&
+         !Sources.has(Loc) && isDestructor(F->getLinkageName());
 }
 
 bool Slicer::isCounting(const Instruction &I) {
@@ -217,10 +209,24 @@ bool Slicer::isCounting(const Instruction &I) {
   return F && !Sources.has(Loc) && Rules.isCounting(*F);
 }
 
+/// True if \p F ends an object for its last owner, and is in the slice only for
+/// what a library stores or computes meanwhile: that is about the library.
+bool Slicer::isLeftByOwner(const Function &F) {
+  const DISubprogram *SP = F.getSubprogram();
+  if (!SP || Sources.has(F) || !Rules.isDestroying(*SP))
+    return false;
+  const SliceStep *S = &Result.Steps[Here];
+  while (S->Why == Why::Controls || S->Why == Why::Calls ||
+         S->Why == Why::Mentions || S->Why == Why::Throws)
+    S = &Result.Steps[S->Next];
+  return S->Why != Why::Exposes && !Sources.has(*S->I->getFunction());
+}
+
 void Slicer::enterControllers(const Instruction &I) {
   for (Instruction *Predicate : Ifs.controllers(I))
     enterDecider(Predicate, Why::Controls);
-  if (!OfResult && Ifs.isControlledByEntry(I)) {
+  if (!OfResult && Ifs.isControlledByEntry(I) &&
+      !isLeftByOwner(*I.getFunction())) {
     for (CallBase *Call : Calls.callers(I.getFunction()))
       enter(Call, Runs, Why::Calls);
     // Passing on one of several functions is the choice of a value.
@@ -464,6 +470,17 @@ void Slicer::enterContents(const Value *Pointer, Instruction &At,
   Settled.clear();
 }
 
+/// What is written through the smart pointer that is the argument \p Pointer
+/// matters: a library may call the function, so that nothing else says which
+/// one it is.
+void Slicer::enterLoadsOf(const Value *Pointer) {
+  if (!isa<Argument>(Pointer))
+    return;
+  for (const User *U : Pointer->users())
+    if (isa<LoadInst>(U) && U->getType()->isPointerTy())
+      enterDerived(U, /*IntoCallees=*/true);
+}
+
 /// What the smart pointer at \p Pointer leads to matters where \p At shows it:
 /// what is written through the pointers that are read from it, from those that
 /// it was copied from, and from copies of those.
@@ -490,11 +507,23 @@ void Slicer::enterTarget(const Value *Pointer, Instruction &At) {
         addTo(Copies, L);
     }
   };
+  if (NumConst == 0)
+    enterLoadsOf(Pointer);
+  // A smart pointer may be moved as bytes.
+  for (const User *U : Pointer->users())
+    if (const auto *Copy = dyn_cast<MemTransferInst>(U);
+        Copy && Copy->getRawDest() == Pointer) {
+      enterLoadsOf(Copy->getRawSource());
+      for (const Location &L : Pointers.resolve(Copy->getRawSource(), true))
+        addTo(Origins, L);
+    }
   for (size_t N = 0; N < Origins.size(); ++N) {
     const Location Kept = Origins[N];
     EnterLoads(Kept, N >= NumConst);
     for (StoreInst *Store : Copied.storesTo(Kept, Object)) {
       enterDerived(Store->getValueOperand(), /*IntoCallees=*/true);
+      if (const auto *From = dyn_cast<LoadInst>(Store->getValueOperand()))
+        enterLoadsOf(From->getPointerOperand());
       for (const Location &L : Copied.sourcesOf(Store->getValueOperand()))
         addTo(Origins, L);
     }
@@ -592,8 +621,11 @@ void Slicer::process(const Item &It) {
   if (It.Reasons & Exposes) {
     if (auto *Call = dyn_cast<CallBase>(It.I))
       enterReachable(*Call);
-    else
-      enterContents(Exposing[It.Exposing].Written, *It.I, /*IsOfCaller=*/true);
+    else {
+      const Argument *Written = Exposing[It.Exposing].Written;
+      enterContents(Written, *It.I, /*IsOfCaller=*/true);
+      enterTarget(Written, *It.I);
+    }
   }
 }
 

@@ -6,6 +6,7 @@
 #include "params/Callbacks.h"
 #include "params/Texts.h"
 #include "slice/KeptObjects.h"
+#include "support/DebugTypes.h"
 #include "support/Names.h"
 #include "support/Print.h"
 
@@ -165,9 +166,29 @@ static bool isSilent(const DILocation *Loc, const RuleMatches &Rules) {
   return In && Rules.isSilent(*In);
 }
 
-/// Adds what \p F, which overrides a function of another library, gives back,
-/// or one that \p CalledBy calls back.
-static void addGivenBack(Function &F, ExternCallFinder::Result &Out,
+/// The arguments of \p F that are smart pointers to objects of which the name
+/// of the class contains \p Answer.
+static SmallVector<const Argument *, 1>
+answers(const Function &F, StringRef Answer, DebugTypes &Debug) {
+  SmallVector<const Argument *, 1> Found;
+  for (const Argument &Arg : F.args()) {
+    const DIType *T =
+        Answer.empty() ? nullptr : DebugTypes::plain(Debug.pointee(&Arg));
+    const auto *Class = dyn_cast_or_null<DICompositeType>(T);
+    const DIType *Of = Class && isSmartPointer(Class) && !pointsToConst(Class)
+                           ? DebugTypes::plain(firstArgumentOf(*Class))
+                           : nullptr;
+    if (Of && Of->getName().contains(Answer))
+      Found.push_back(&Arg);
+  }
+  return Found;
+}
+
+/// Adds what \p F, which overrides a function of another library, gives back:
+/// its result, and the objects at \p Written; or a function that \p CalledBy
+/// calls back.
+static void addGivenBack(Function &F, ArrayRef<const Argument *> Written,
+                         ExternCallFinder::Result &Out,
                          StringRef CalledBy = "") {
   std::string Name =
       CalledBy.empty() ? qualifiedName(linkageName(F)) : CalledBy.str();
@@ -184,7 +205,7 @@ static void addGivenBack(Function &F, ExternCallFinder::Result &Out,
       continue;
     if (Return->getReturnValue())
       Add(*Return, nullptr);
-    for (const Argument *Arg : writtenArguments(F))
+    for (const Argument *Arg : Written)
       Add(*Return, Arg);
   }
 }
@@ -216,15 +237,19 @@ ExternCallFinder::Result ExternCallFinder::run(Module &M,
                           AM.getResult<OptionsAnalysis>(M));
   for (Function *F : Overriding.Functions)
     if (!Rules.isSilent(*F->getSubprogram()))
-      addGivenBack(*F, R);
+      addGivenBack(*F, writtenArguments(*F), R);
   UserSources Sources(AM.getResult<OptionsAnalysis>(M));
+  DebugTypes &Debug = AM.getResult<DebugTypesAnalysis>(M);
   SmallSetVector<Function *, 8> Given = Overriding.Functions;
   forEachCall(M, Rules, Rule::Callback, [&](CallBase &Call, const Rule &Row) {
     for (unsigned N : Row.Callbacks)
-      if (const Value *Argument = Row.Name ? nullptr : argument(Call, Row, N))
-        for (Function *F : calledBackBy(Argument, Sources))
-          if (Given.insert(F))
-            addGivenBack(*F, R, Row.Function);
+      if (const Value *Callback = Row.Name ? nullptr : argument(Call, Row, N))
+        for (Function *F : calledBackBy(*Callback, Call, Sources))
+          if (Given.insert(F)) {
+            SmallVector<const Argument *, 4> Written(writtenArguments(*F));
+            append_range(Written, answers(*F, Row.Answer, Debug));
+            addGivenBack(*F, Written, R, Row.Function);
+          }
   });
   SmallVector<InheritedWrite, 0> Writes = inheritedWrites(M, Overriding);
   Writes.append(keptObjectWrites(M, AM.getResult<SimpleCallGraph>(M), Rules,

@@ -24,6 +24,7 @@ from std_msgs.msg import Float64
 
 PATIENCE_S = 300.0
 SETTLED_S = 0.5
+ASK_AGAIN_S = 2.0
 
 
 def class_of(kind: str) -> type:
@@ -66,13 +67,17 @@ def main() -> None:
         lambda: all(client.service_is_ready() for client in clients.values()),
         lambda: f"not up: {[name for name in clients if not clients[name].service_is_ready()]}",
     )
-    answers = {
-        name: client.call_async(ListParameters.Request()) for name, client in clients.items()
-    }
-    until(
-        lambda: all(answer.done() for answer in answers.values()),
-        lambda: f"no answer: {[name for name in answers if not answers[name].done()]}",
-    )
+    # A node whose side of the connection is not up yet loses the call: it is asked again.
+    silent = set(clients)
+    end = time.monotonic() + PATIENCE_S
+    while silent and time.monotonic() < end:
+        calls = {name: clients[name].call_async(ListParameters.Request()) for name in silent}
+        ask_again = time.monotonic() + ASK_AGAIN_S
+        while time.monotonic() < ask_again and not all(call.done() for call in calls.values()):
+            rclpy.spin_once(node, timeout_sec=0.05)
+        silent -= {name for name, call in calls.items() if call.done()}
+    if silent:
+        sys.exit(f"rclcpp_feeder: no answer: {sorted(silent)}")
     until(
         lambda: feeder.get_subscription_count() >= config["subscriptions"],
         lambda: f"{feeder.get_subscription_count()} subscriptions to /input",

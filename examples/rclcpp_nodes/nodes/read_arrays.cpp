@@ -13,7 +13,8 @@ public:
     declare_parameter("steps", std::vector<int64_t>{1, 3, 6});
     get_parameter("steps", steps_);
     declare_parameter("modes", std::vector<std::string>{"slow", "fast"});
-    for (const auto &mode : get_parameter("modes").as_string_array())
+    const auto modes = get_parameter("modes").as_string_array();
+    for (const auto &mode : modes)
       if (mode == "fast")
         fast_ = true;
     flags_ = declare_parameter("flags", std::vector<bool>{true, false});

@@ -24,8 +24,7 @@ public:
       get_logger().log("noted");
     if (V > Timed)
       get_clock();
-    // CHECK-DAG: parameter 'limit' relation > as x distance 1 {{.*}} at
-    // [[#@LINE+1]]:11
+    // CHECK-DAG: parameter 'limit' relation > as x distance 1 {{.*}} at [[#@LINE+1]]:11
     if (V > Limit)
       Out->publish(rclcpp::SerializedMessage());
   }

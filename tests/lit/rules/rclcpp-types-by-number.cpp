@@ -21,12 +21,10 @@ public:
   }
   // CHECK-DAG: comparisons of {{.*}}: 2
   void step(double V, int64_t N) {
-    // CHECK-DAG: parameter 'most' relation < as x distance 1 {{.*}} at
-    // [[#@LINE+1]]:11
+    // CHECK-DAG: parameter 'most' relation < as x distance 1 {{.*}} at [[#@LINE+1]]:11
     if (N < Most)
       Out->publish(std_msgs::msg::Number());
-    // CHECK-DAG: parameter 'far' relation > as x distance 1 {{.*}} at
-    // [[#@LINE+1]]:11
+    // CHECK-DAG: parameter 'far' relation > as x distance 1 {{.*}} at [[#@LINE+1]]:11
     if (V > Far)
       Out->publish(std_msgs::msg::Number());
   }

@@ -156,6 +156,14 @@ public:
   virtual ~Publisher() = default;
   template <typename T>
   std::enable_if_t<std::is_same<T, M>::value> publish(const T &Message);
+  template <typename T>
+  std::enable_if_t<std::is_same<T, M>::value>
+  publish(std::unique_ptr<T> Message);
+};
+
+template <typename S> class Service {
+public:
+  virtual ~Service();
 };
 
 class SerializedMessage {
@@ -270,6 +278,22 @@ public:
   std::shared_ptr<GenericPublisher>
   create_generic_publisher(const std::string &Topic, const std::string &Type,
                            const QoS &);
+  template <typename S, typename F>
+  std::shared_ptr<Service<S>> create_service(const std::string &Name,
+                                             F &&Callback, const QoS &Of = 1) {
+    return makeService<S>(
+        Name,
+        std::function<void(std::shared_ptr<typename S::Request>,
+                           std::shared_ptr<typename S::Response>)>(
+            std::forward<F>(Callback)),
+        Of);
+  }
+  template <typename S>
+  std::shared_ptr<Service<S>>
+  makeService(const std::string &Name,
+              std::function<void(std::shared_ptr<typename S::Request>,
+                                 std::shared_ptr<typename S::Response>)>,
+              const QoS &);
 };
 
 class ParameterEventHandler {
