@@ -15,7 +15,7 @@ from pytpc.ingest.reading import read
 from pytpc.recording.events import Events
 from suite.build import Suite, build_suite, instrumented, link_plain
 from suite.expectations import RCLCPP_PACKAGE, Verdict, nodes
-from suite.known import RCLCPP_KNOWN
+from suite.known import RCLCPP_KNOWN, RCLCPP_REPORTS_KNOWN
 from suite.rclcpp_run import Heard, run_nodes, without_rclcpp
 from suite.report import judge_all
 from suite.reported import not_as_listed, raw
@@ -87,4 +87,8 @@ def test_publishes_the_same(suite: Suite, runs: Runs, node: str) -> None:
 def test_reports_what_the_list_says(suite: Suite, runs: Runs, node: str) -> None:
     require_built(suite, node)
     (unit,) = (each for each in suite.result.units if each.link_unit == node)
-    assert list(not_as_listed(runs.events, unit, RCLCPP_PACKAGE)) == []
+    wrong = list(not_as_listed(runs.events, unit, RCLCPP_PACKAGE))
+    if node in RCLCPP_REPORTS_KNOWN:
+        assert wrong, f"{node} is right now: take it out of suite.known"
+        pytest.xfail(RCLCPP_REPORTS_KNOWN[node])
+    assert wrong == []

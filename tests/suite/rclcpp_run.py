@@ -75,7 +75,7 @@ def _run_together(
             text=True,
         )
         assert feeder.stdout is not None
-        running = {}
+        running: dict[str, subprocess.Popen[bytes]] = {}
         try:
             assert feeder.stdout.readline() == "listens\n"
             for name, program in programs.items():
@@ -84,7 +84,8 @@ def _run_together(
                 )
             ended = feeder.wait(PATIENCE_S)
         finally:
-            for process in (*running.values(), feeder):
+            feeder.send_signal(signal.SIGINT)
+            for process in running.values():
                 process.send_signal(signal.SIGINT)
             for name, process in running.items():
                 status[name] = process.wait(PATIENCE_S)
