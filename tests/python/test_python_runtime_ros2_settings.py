@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from pytpc.python_runtime.config import Config
-from pytpc.python_runtime.ros2_settings import changed, entries, parameter_files
+from pytpc.python_runtime.ros2_settings import changed, entries, overrides
 
 NAME = "/robot1/guard/_tpc"
 
@@ -25,7 +25,7 @@ def test_a_pattern_that_is_for_the_hidden_node(pattern):
     assert entries({pattern: {"ros__parameters": {"sink": "file"}}}, NAME) == [("sink", "file")]
 
 
-@pytest.mark.parametrize("pattern", ["/**", "/*", "_tpc", "/*/_tpc", "/robot2/guard/_tpc", "guard"])
+@pytest.mark.parametrize("pattern", ["/**", "/*", "/*/_tpc", "/robot2/guard/_tpc", "guard"])
 def test_a_pattern_for_other_nodes(pattern):
     assert entries({pattern: {"ros__parameters": {"sink": "file"}}}, NAME) == []
 
@@ -38,11 +38,20 @@ def test_namespaces_may_be_nested_and_what_is_none_is_left_out():
     assert entries(None, NAME) == []
 
 
-def test_files_are_taken_from_the_arguments_for_ros():
-    words = ["node", "--params-file", "own", "--ros-args", "--params-file", "a", "-r", "x:=y"]
-    assert parameter_files([*words, "--params-file", "b"]) == ["a", "b"]
-    assert parameter_files([*words, "--", "--params-file", "c"]) == ["a"]
-    assert parameter_files(["--ros-args", "--params-file"]) == []
+def test_files_and_rules_are_taken_from_the_arguments_for_ros(tmp_path):
+    for name in ("own", "a", "b"):
+        text = f"/**/_tpc: {{ros__parameters: {{sink: {name}}}}}\n"
+        (tmp_path / name).write_text(text)
+    own, a, b = (str(tmp_path / name) for name in ("own", "a", "b"))
+    words = ["node", "--params-file", own, "--ros-args", "--params-file", a, "-r", "x:=y"]
+
+    def values(*more):
+        return [value for _, _, value in overrides([*words, *more], NAME)]
+
+    assert values("--params-file", b) == ["a", "b"]
+    assert values("--", "--params-file", b) == ["a"]
+    assert values("-p", "_tpc:sink:=file", "-p", "sink:=off") == ["a", "file"]
+    assert overrides(["--ros-args", "--params-file"], NAME) == []
 
 
 @pytest.mark.parametrize(

@@ -57,7 +57,7 @@ def test_awkward_files_survive(folder: Path, capsys: pytest.CaptureFixture[str])
 
 def test_the_projects_own_files_survive(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert round_trip.main([str(ROOT / name) for name in ("examples", "cmake", "passes")]) == 0
-    assert "      7 projects as files" in capsys.readouterr().out
+    assert "      9 projects as files" in capsys.readouterr().out
 
 
 def test_a_file_that_does_not_survive_is_told(
