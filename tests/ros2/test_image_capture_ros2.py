@@ -15,6 +15,7 @@ from pytpc_evaluation.demo.demo import TreatedMission, failures
 from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE_ROS2
 from pytpc_evaluation.demo.ros2_missions import run_ros2_treatment
 from pytpc_evaluation.demo.ros2_robot import Ros2Robot, prepared
+from ros2_graph import PATIENCE_S
 
 CHANGED = "type1_face_detection_threshold"
 
@@ -36,7 +37,7 @@ def missions(robot, domain, tmp_path_factory) -> dict[str, TreatedMission]:
             seed=1,
             # As fast as the machine: the simulated time waits for the nodes.
             rate=100.0,
-            timeout_s=150.0,
+            timeout_s=PATIENCE_S,
         )
         for name in ("clean", CHANGED)
     }
