@@ -7,6 +7,7 @@ import struct
 from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from tests.oracle.control import ControlDependence
 from tests.oracle.ir import Argument, Function, Instruction, Place, Value, number, parse
@@ -125,6 +126,17 @@ def check(text: str, excluded: str) -> set[Finding]:
     return Checker(Memory(module, Program(module, rules)), rules, is_user).findings()
 
 
+class Entry(NamedTuple):
+    """An instruction in the slice, and why: for its value, that it runs, or what it throws.
+
+    `called`: so does whether its function is called.
+    """
+
+    item: Instruction
+    why: str
+    called: bool = True
+
+
 class Checker:
     """The analysis of one module."""
 
@@ -177,19 +189,24 @@ class Checker:
         value on it.
         """
         exposing = [i for i in self.program.instructions if i.is_call and self.exposes(i)]
-        this = [(i, "data") for i in exposing]
-        entered, number_ = set(this), 1
+        this = [Entry(i, "data") for i in exposing]
+        entered, number_ = {(i, "data") for i in exposing} | {(i, "called") for i in exposing}, 1
         while this:
-            following: list[tuple[object, str]] = []
-            for item, why in this:
+            following: list[Entry] = []
+            for item, why, called in this:
                 for nearer in self.choosers_of(item):
                     self.distance.setdefault(nearer, number_)
-                following += self.step(item, why)
-            for item, why in following:
+                following += self.step(item, why, called)
+            this = []
+            for item, why, called in dict.fromkeys(following):
                 if why == "data" and item.opcode in ("icmp", "fcmp"):
                     self.shown.setdefault(item, number_)
-            this = [i for i in dict.fromkeys(following) if i not in entered]
-            entered |= set(this)
+                if (item, why) not in entered:
+                    this.append(Entry(item, why, called))
+                elif called and (item, "called") not in entered:
+                    # Only now it matters that its function is called.
+                    this.append(Entry(item, "control"))
+                entered |= {(item, why), *([(item, "called")] if called else [])}
             number_ += 1
 
     def exposes(self, call: Instruction) -> bool:
@@ -206,46 +223,51 @@ class Checker:
             found = found | {item}
         return found
 
-    def step(self, item: Instruction, why: str) -> list[tuple[Instruction, str]]:
-        """What enters the round after that of `item`."""
+    def step(self, item: Instruction, why: str, called: bool) -> list[Entry]:
+        """What enters the round after that of `item`.
+
+        Without `called` it matters for the result of a call on the way: that call decides whether
+        it runs, and other calls of its function do not.
+        """
         # Which exception is there, what throws it decides, not what a landing pad hands over.
-        out = [(p, how_decides(p)) for p in self.choosers_of(item)]
+        out = [Entry(p, how_decides(p), called) for p in self.choosers_of(item)]
         _, always = self.control[item.function].controllers(item.block, item)
-        if always:
-            out += [(c, "control") for c in self.program.callers(item.function)]
+        if always and called:
+            out += [Entry(c, "control") for c in self.program.callers(item.function)]
             # What is handed on to be called runs only if it was; one of several is a value.
             mentions = self.program.mentions.get(item.function, [])
-            out += [(m, "data" if is_choice(m) else "control") for m in mentions]
+            out += [Entry(m, "data" if is_choice(m) else "control") for m in mentions]
         if item.is_call and (chosen := self.object_of(item)) is not None:
-            out += [(i, "data") for i in self.instructions_of(chosen)]
+            out += [Entry(i, "data", called) for i in self.instructions_of(chosen)]
         if why == "throws":
             # A call that may throw enters as a predicate does, and then what throws below it.
             inner = [i for f in self.program.callees(item) for i in self.throws.leaving(f)]
-            out += [(i, "control" if is_throw(i) else "throws") for i in inner]
+            out += [Entry(i, "control" if is_throw(i) else "throws") for i in inner]
         if why in ("control", "throws"):
             return out
         known = item.is_call and self.program.callees(item)
         shown = item.operands
         if item.is_call and self.exposes(item):
-            out += [(i, "data") for i in self.publisher(item.arguments[0])]
+            out += [Entry(i, "data", called) for i in self.publisher(item.arguments[0])]
             shown = item.operands[1:]
         for o in [] if known else shown:
-            out += [(i, "data") for i in self.instructions_of(o)]
+            out += [Entry(i, "data", called) for i in self.instructions_of(o)]
         if item.opcode == "load":
             definitions = self.memory.definitions(item)
             # What is copied is a definition of its own; of the copy it matters that it is done.
             copied = {c.by for c in self.memory.copies}
             out += [
-                (d, "control" if d in copied else "data")
+                Entry(d, "control" if d in copied else "data")
                 for d in definitions
                 if not self.is_constructed(d)
             ]
         elif known:
-            out += [(r, "data") for f in known for r in self.program.returns(f)]
+            returns = [r for f in known for r in self.program.returns(f)]
+            out += [Entry(r, "data", called=False) for r in returns]
         elif item.is_call and self.exposes(item):
-            out += [(w, "data") for w in self.writes_behind(item)]
+            out += [Entry(w, "data") for w in self.writes_behind(item)]
         elif item.is_call and not SILENT.match(item.callee.name):
-            out += [(w, "data") for w in self.handed(item)]
+            out += [Entry(w, "data") for w in self.handed(item)]
         return out
 
     def object_of(self, call: Instruction) -> Value | None:
