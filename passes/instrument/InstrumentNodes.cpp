@@ -42,12 +42,51 @@ bool givesText(const Module &M, StringRef NodeName) {
   return !F || F->getFunctionType() == textMethod(M.getContext());
 }
 
-FunctionCallee weakFunction(Module &M, StringRef Name, FunctionType *T) {
+/// A function that the program need not have: its declaration is weak, unless
+/// the program uses it.
+static FunctionCallee weakFunction(Module &M, StringRef Name, FunctionType *T) {
   FunctionCallee Callee = M.getOrInsertFunction(Name, T);
   if (auto *F = dyn_cast<Function>(Callee.getCallee());
       F && F->isDeclaration() && F->use_empty())
     F->setLinkage(GlobalValue::ExternalWeakLinkage);
   return Callee;
+}
+
+Function *withNodeName(Module &M, StringRef Name, FunctionType *T,
+                       unsigned Node, StringRef NodeName, StringRef LogName) {
+  if (Function *Known = M.getFunction(Name))
+    return Known;
+  FunctionCallee Log = weakFunction(M, LogName, T);
+  if (auto *F = dyn_cast<Function>(Log.getCallee()); F && F->isDeclaration()) {
+    F->setDoesNotThrow();
+    // As C++ passes a bool.
+    for (Argument &A : F->args())
+      if (A.getType()->isIntegerTy(1))
+        A.addAttr(Attribute::ZExt);
+  }
+  LLVMContext &Ctx = M.getContext();
+  FunctionCallee NameOf = weakFunction(M, NodeName, textMethod(Ctx));
+  auto *F = Function::Create(T, GlobalValue::InternalLinkage, Name, M);
+  auto *Look = BasicBlock::Create(Ctx, "", F);
+  auto *Report = BasicBlock::Create(Ctx, "", F);
+  auto *Done = BasicBlock::Create(Ctx, "", F);
+  IRBuilder<> B(Look);
+  B.CreateCondBr(B.CreateOr(B.CreateIsNull(Log.getCallee()),
+                            B.CreateIsNull(NameOf.getCallee())),
+                 Done, Report);
+  B.SetInsertPoint(Report);
+  SmallVector<Value *, 6> Arguments;
+  for (Argument &A : F->args())
+    Arguments.push_back(&A);
+  Arguments[Node] = B.CreateCall(NameOf, {Arguments[Node]});
+  CallInst *Call = B.CreateCall(Log, Arguments);
+  for (Argument &A : F->args())
+    if (A.getType()->isIntegerTy(1))
+      Call->addParamAttr(A.getArgNo(), Attribute::ZExt);
+  B.CreateBr(Done);
+  B.SetInsertPoint(Done);
+  B.CreateRetVoid();
+  return F;
 }
 
 namespace {
@@ -126,36 +165,15 @@ static SmallVector<MadeNode, 0> findNodes(Module &M, StringRef Class) {
   return Found;
 }
 
-/// `void tpc.node.NODE(node, object, size)`, which asks the node for its name
-/// by its method \p NodeName and calls log_node, if there are both.
+/// `void tpc.node.NODE(node, object, size)`, which calls log_node.
 static Function *reportFunction(Module &M, StringRef NodeName) {
-  std::string Name = ("tpc.node." + NodeName).str();
-  if (Function *Known = M.getFunction(Name))
-    return Known;
   LLVMContext &Ctx = M.getContext();
   Type *Pointer = PointerType::getUnqual(Ctx);
   auto *T = FunctionType::get(
       Type::getVoidTy(Ctx),
       {Pointer, Pointer, M.getDataLayout().getIntPtrType(Ctx)}, false);
-  FunctionCallee Log = weakFunction(M, LogName, T);
-  if (auto *F = dyn_cast<Function>(Log.getCallee()))
-    F->setDoesNotThrow();
-  FunctionCallee NameOf = weakFunction(M, NodeName, textMethod(Ctx));
-  auto *F = Function::Create(T, GlobalValue::InternalLinkage, Name, M);
-  auto *Look = BasicBlock::Create(Ctx, "", F);
-  auto *Report = BasicBlock::Create(Ctx, "", F);
-  auto *Done = BasicBlock::Create(Ctx, "", F);
-  IRBuilder<> B(Look);
-  B.CreateCondBr(B.CreateOr(B.CreateIsNull(Log.getCallee()),
-                            B.CreateIsNull(NameOf.getCallee())),
-                 Done, Report);
-  B.SetInsertPoint(Report);
-  B.CreateCall(
-      Log, {B.CreateCall(NameOf, {F->getArg(0)}), F->getArg(1), F->getArg(2)});
-  B.CreateBr(Done);
-  B.SetInsertPoint(Done);
-  B.CreateRetVoid();
-  return F;
+  return withNodeName(M, ("tpc.node." + NodeName).str(), T, 0, NodeName,
+                      LogName);
 }
 
 SmallVector<Instruction *, 0> insertNodes(Module &M, const Rules &Tables) {

@@ -31,10 +31,13 @@ std::string nodeNameOf(llvm::StringRef Class);
 /// False if \p M has a method \p NodeName that does not return a C string.
 bool givesText(const llvm::Module &M, llvm::StringRef NodeName);
 
-/// A function that the program need not have: its declaration is weak, unless
-/// the program uses it.
-llvm::FunctionCallee weakFunction(llvm::Module &M, llvm::StringRef Name,
-                                  llvm::FunctionType *T);
+/// The function \p Name of type \p T, with a node at \p Node among its
+/// arguments. If the program has the method \p NodeName and the log library's
+/// \p LogName, it passes all of them on, with what the method returns in place
+/// of the node. Made once.
+llvm::Function *withNodeName(llvm::Module &M, llvm::StringRef Name,
+                             llvm::FunctionType *T, unsigned Node,
+                             llvm::StringRef NodeName, llvm::StringRef LogName);
 
 /// Inserts the reports of the nodes that \p M makes, of the classes whose
 /// parameters \p Tables describe, and returns what it inserted, in the order of

@@ -149,44 +149,17 @@ static Function *reportFunction(Module &M, FunctionCallee Log,
   return F;
 }
 
-/// `void tpc.read.in.NODE(key, node, name, text, object, size)`, which asks the
-/// node for its name by its method \p NodeName and calls log_read_in, if there
-/// are both.
+/// `void tpc.read.in.NODE(key, node, name, text, object, size)`, which calls
+/// log_read_in.
 static Function *nodeReportFunction(Module &M, StringRef NodeName) {
-  std::string Name = ("tpc.read.in." + NodeName).str();
-  if (Function *Known = M.getFunction(Name))
-    return Known;
   LLVMContext &Ctx = M.getContext();
   Type *Pointer = PointerType::getUnqual(Ctx);
   auto *T = FunctionType::get(Type::getVoidTy(Ctx),
                               {Pointer, Pointer, Pointer, Type::getInt1Ty(Ctx),
                                Pointer, M.getDataLayout().getIntPtrType(Ctx)},
                               false);
-  FunctionCallee Log = weakFunction(M, LogInName, T);
-  if (auto *F = dyn_cast<Function>(Log.getCallee()); F && F->isDeclaration()) {
-    F->addParamAttr(3, Attribute::ZExt);
-    F->setDoesNotThrow();
-  }
-  FunctionCallee NameOf =
-      weakFunction(M, NodeName, FunctionType::get(Pointer, {Pointer}, false));
-  auto *F = Function::Create(T, GlobalValue::InternalLinkage, Name, M);
-  auto *Look = BasicBlock::Create(Ctx, "", F);
-  auto *Report = BasicBlock::Create(Ctx, "", F);
-  auto *Done = BasicBlock::Create(Ctx, "", F);
-  IRBuilder<> B(Look);
-  B.CreateCondBr(B.CreateOr(B.CreateIsNull(Log.getCallee()),
-                            B.CreateIsNull(NameOf.getCallee())),
-                 Done, Report);
-  B.SetInsertPoint(Report);
-  SmallVector<Value *, 6> Arguments;
-  for (Argument &A : F->args())
-    Arguments.push_back(&A);
-  Arguments[1] = B.CreateCall(NameOf, {Arguments[1]});
-  B.CreateCall(Log, Arguments)->addParamAttr(3, Attribute::ZExt);
-  B.CreateBr(Done);
-  B.SetInsertPoint(Done);
-  B.CreateRetVoid();
-  return F;
+  return withNodeName(M, ("tpc.read.in." + NodeName).str(), T, 1, NodeName,
+                      LogInName);
 }
 
 static Constant *textOf(Module &M, StringRef Text, const Twine &Name) {
