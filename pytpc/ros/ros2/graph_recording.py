@@ -194,7 +194,6 @@ class GraphRecording:
         self._missed = 0
         self._on_quiet = options.on_quiet
         self._event_source: Source | None = None
-        self._waiting_events: list[bytes] = []
         self._began_ns = time.time_ns()
         # Until when what a logger said before the recording comes.
         self._history_until: dict[bytes, float] = {}
