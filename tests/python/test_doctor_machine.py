@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from pytpc.base.paths import COLCON_EXTENSIONS, build_tools, ros_places
+from pytpc.base.paths import COLCON_EXTENSIONS, build_tools, prefix, ros_places
 from pytpc.workspace.doctor import machine as doctor_machine
 from pytpc.workspace.doctor.finding import Finding, Severity, by_severity, error, note, warning
 from pytpc.workspace.doctor.machine import (
@@ -20,6 +20,7 @@ from pytpc.workspace.doctor.machine import (
 )
 
 MIB = 1024 * 1024
+RCL_HEADER = "include/rcl/rcl/rcl.h"
 SOUND = Machine(
     programs={
         name: InstalledProgram(
@@ -123,6 +124,18 @@ CASES = [
         "catkin and roscpp of ROS 1 not found: catkin packages cannot be built",
         "libroscpp-dev",
     ),
+    (
+        replace(SOUND, rcl=Path("/opt/ros/kilted"), has_ros2_part=False, prefix=Path("/opt/a b")),
+        W,
+        "no part for ROS 2, so C++ nodes of ROS 2 write files alone",
+        " -DCMAKE_INSTALL_PREFIX='/opt/a b' -DTPC_ROS2_PREFIX=/opt/ros/kilted && ",
+    ),
+    (
+        replace(SOUND, rcl=Path("/opt/ros/kilted"), has_ros2_part=False, has_rcl_header=False),
+        W,
+        "to build it, install the headers of rcl",
+        "apt-get install ros-kilted-rcl",
+    ),
     (env(CXX="g++"), N, "CXX=g++ is ignored", "unset CXX"),
     (env(CFLAGS="-O2 -fsanitize=address,undefined"), W, "-fsanitize=address,undefined", "unset"),
     (env(LDFLAGS="-static"), W, "-static cannot be combined", "unset LDFLAGS"),
@@ -169,6 +182,23 @@ def test_one_thing_wrong_is_one_finding(
 )
 def test_what_is_well_is_not_said(machine: Machine) -> None:
     assert check_machine(machine) == []
+
+
+def test_that_the_log_library_has_a_part_for_ros_2_is_said() -> None:
+    (found,) = check_machine(replace(SOUND, rcl=Path("/opt/ros/kilted")))
+    assert (found.severity.value, found.where, found.mend) == ("note", "/opt/ros/kilted", None)
+    assert found.what == "C++ nodes report to ROS 2: the log library was built for it"
+
+
+def test_rcl_is_found_in_the_ros_2_in_use(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, file in (("a", "lib/librcl.so"), ("b", "lib/librcl.so"), ("b", RCL_HEADER)):
+        (tmp_path / name / file).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name / file).touch()
+    for listed, expected in ((["a"], ("a", False)), (["a", "b"], ("b", True))):
+        monkeypatch.setenv("AMENT_PREFIX_PATH", ":".join(f"{tmp_path}/{name}" for name in listed))
+        seen = look_at_machine(tmp_path)
+        assert (seen.rcl, seen.has_rcl_header) == (tmp_path / expected[0], expected[1])
+    assert seen.has_ros2_part == (prefix() / "lib/libtpc_log_ros2.so").exists()
 
 
 def test_paths_of_several_distributions() -> None:

@@ -34,7 +34,7 @@ from pytpc.base.paths import (
     unsuited_clangs,
 )
 from pytpc.workspace.doctor.finding import Finding, error, note, warning
-from pytpc.workspace.ros2 import has_module
+from pytpc.workspace.ros2 import find_ros2, has_module
 
 # cmake_language(DEFER), by which tpc.cmake sees the finished targets, came with 3.19.
 CMAKE_NEEDED = (3, 19)
@@ -57,6 +57,10 @@ _PARTS = (
 )
 # What the log library loads in a node of ROS 1.
 _ROS1_PART = "lib/libtpc_log_ros1.so"
+# The same for ROS 2; it is built where rcl's headers are.
+_ROS2_PART = "lib/libtpc_log_ros2.so"
+_DISTRIBUTIONS = Path("/opt/ros")
+_RCL, _RCL_HEADER = "lib/librcl.so", "include/rcl/rcl/rcl.h"
 _PATIENCE_S = 60
 # What /usr/bin/python3 is asked: a dictionary with "modules" and "colcon".
 _QUESTION = """
@@ -96,7 +100,8 @@ class Machine:
     build needs; spaces are in bytes; ``setup`` is what installs TPC's own half. ``release`` is
     that of the clang in use, ``other_clangs`` are those that TPC does not work with; ``unlinked``
     are libraries that the log library needs in a node of ROS 1 and that are not found; ``conda`` is
-    the environment of conda that is active.
+    the environment of conda that is active; ``rcl`` is the prefix of a ROS 2 that has rcl, with its
+    headers if ``has_rcl_header``, and ``has_ros2_part`` is whether the log library can use it.
     """
 
     programs: Mapping[str, InstalledProgram] = field(default_factory=dict)
@@ -118,6 +123,9 @@ class Machine:
     other_clangs: tuple[str, ...] = ()
     unlinked: tuple[str, ...] = ()
     conda: Path | None = None
+    rcl: Path | None = None
+    has_rcl_header: bool = True
+    has_ros2_part: bool = True
 
 
 def look_at_machine(folder: Path) -> Machine:
@@ -139,6 +147,7 @@ def look_at_machine(folder: Path) -> Machine:
     disk = folder.absolute()
     while not disk.exists():
         disk = disk.parent
+    rcl = _prefix_of_rcl(os.environ)
     return Machine(
         programs=programs,
         python=None if python is None else Path(python),
@@ -159,7 +168,18 @@ def look_at_machine(folder: Path) -> Machine:
         other_clangs=tuple(other_clangs()),
         unlinked=_unlinked(prefix() / _ROS1_PART),
         conda=conda_prefix(),
+        rcl=rcl,
+        has_rcl_header=rcl is not None and (rcl / _RCL_HEADER).is_file(),
+        has_ros2_part=(prefix() / _ROS2_PART).exists(),
     )
+
+
+def _prefix_of_rcl(environment: Mapping[str, str]) -> Path | None:
+    """That of the ROS 2 in use, else one in /opt/ros; one that has headers comes first."""
+    ros2 = find_ros2(environment)
+    places = [*(ros2.prefixes if ros2 else ()), *sorted(_DISTRIBUTIONS.glob("*"))]
+    having = [place for place in places if (place / _RCL).exists()]
+    return next((one for one in having if (one / _RCL_HEADER).is_file()), next(iter(having), None))
 
 
 def version_of(said: str) -> tuple[int, ...]:
@@ -354,15 +374,29 @@ def _installed(machine: Machine) -> Iterator[Finding]:
             machine.prefix,
             machine.setup,
         )
+    if not machine.missing_parts and machine.rcl is not None:
+        yield _part_of_ros2(machine, machine.rcl)
 
 
-def _build_log_library(prefix: Path, release: str) -> str:
+def _part_of_ros2(machine: Machine, rcl: Path) -> Finding:
+    if machine.has_ros2_part:
+        return note("C++ nodes report to ROS 2: the log library was built for it", rcl)
+    what = "the log library has no part for ROS 2, so C++ nodes of ROS 2 write files alone"
+    if not machine.has_rcl_header:
+        what += "; to build it, install the headers of rcl"
+        is_debian = rcl.parent == _DISTRIBUTIONS
+        return warning(what, rcl, f"apt-get install ros-{rcl.name}-rcl" if is_debian else None)
+    return warning(what, rcl, _build_log_library(machine.prefix, machine.release, rcl))
+
+
+def _build_log_library(prefix: Path, release: str, rcl: Path | None = None) -> str:
     """The command; its compiler is one that is needed anyway, as there may be no g++."""
     place = shlex.quote(str(prefix))
     compilers = f"-DCMAKE_C_COMPILER=clang-{release} -DCMAKE_CXX_COMPILER=clang++-{release}"
+    ros2 = "" if rcl is None else f" -DTPC_ROS2_PREFIX={shlex.quote(str(rcl))}"
     return (
         f"build=$(mktemp -d) && cmake -S {place}/share/tpc/runtime_log -B $build {compilers}"
-        f" -DCMAKE_INSTALL_PREFIX={place} && cmake --build $build --target install"
+        f" -DCMAKE_INSTALL_PREFIX={place}{ros2} && cmake --build $build --target install"
     )
 
 
