@@ -293,6 +293,8 @@ class Runtime:
 
     def fall_back(self, why: str) -> None:
         """The graph cannot be used: write a file from now on, with what waits for the graph."""
+        # rcl goes on with what its developers may do.
+        why = why.partition("\n")[0]
         with self._lock:
             former, config = self._sink, self.config.filled_in()
             if not isinstance(former, WaitingSink):

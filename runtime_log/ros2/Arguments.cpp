@@ -34,6 +34,19 @@ static bool isContainer() {
   return Library;
 }
 
+std::string enclaveOfCommandLine() {
+  std::string Enclave;
+  bool IsOfRos = false;
+  const std::vector<std::string> Words = commandLine();
+  for (size_t I = 0; I + 1 < Words.size(); ++I) {
+    if (Words[I] == "--ros-args" || Words[I] == "--")
+      IsOfRos = Words[I] != "--";
+    else if (IsOfRos && (Words[I] == "--enclave" || Words[I] == "-e"))
+      Enclave = Words[I + 1];
+  }
+  return Enclave;
+}
+
 bool isNamedByCommandLine() {
   if (isContainer())
     return true;

@@ -9,6 +9,10 @@
 
 namespace tpc {
 
+/// The enclave of the process, whose keys its nodes have; empty if none is
+/// named.
+std::string enclaveOfCommandLine();
+
 /// Whether the name of the process's node does not depend on its program.
 bool isNamedByCommandLine();
 

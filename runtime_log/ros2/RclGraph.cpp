@@ -2,6 +2,7 @@
 #include "ros2/RclGraph.h"
 #include "HostCalls.h"
 #include "RclState.h"
+#include "ros2/Arguments.h"
 #include "ros2/Rcl.h"
 
 #include <rcl/init.h>
@@ -74,8 +75,12 @@ bool RclGraph::begin(const std::string &Name, std::string &Why) {
       isOk(rcl_init_options_set_domain_id(&Options,
                                           static_cast<size_t>(Domain)));
     Context = rcl_get_zero_initialized_context();
-    // The arguments of the command line would rename the node.
-    IsMade = rcl_init(0, nullptr, &Options, &Context) == RCL_RET_OK;
+    // The others of the command line would rename the node.
+    const std::string Enclave = enclaveOfCommandLine();
+    const char *Words[] = {"", "--ros-args", "--enclave", Enclave.c_str()};
+    IsMade =
+        rcl_init(Enclave.empty() ? 0 : 4, Enclave.empty() ? nullptr : Words,
+                 &Options, &Context) == RCL_RET_OK;
     if (!IsMade)
       Why = reasonOfRcl();
     isOk(rcl_init_options_fini(&Options));

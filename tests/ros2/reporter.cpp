@@ -6,6 +6,7 @@
 //   report N PAUSE_US   N reports, the values 0 to N-1; the outcome alternates
 //   follow              the node's clock follows /clock
 //   simulated NS        it follows /clock, which is NS
+//   env NAME VALUE      sets a variable of the environment
 //   read NAME           a parameter is read
 //   node NAME           one more node
 //   read_on NAME        a parameter of that node is read
@@ -106,6 +107,10 @@ int main(int Count, char **Words) {
       if (!Library)
         std::puts(dlerror());
 #endif
+    } else if (Command == "env") {
+      std::string Name, Value;
+      std::cin >> Name >> Value;
+      setenv(Name.c_str(), Value.c_str(), 1);
     } else if (Command == "follow") {
       check(rcl_enable_ros_time_override(&Clock));
     } else if (Command == "simulated") {

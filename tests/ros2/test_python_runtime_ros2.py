@@ -448,6 +448,31 @@ high(6.0)
         assert (events.cmp.tolist(), events.nodes) == ([1.0, 7.0, 6.0], ("/alone",))
 
 
+# The program's node has what it needs, and the hidden node comes after it.
+def test_a_hidden_node_without_keys_leaves_the_node_alone(domain, tmp_path):
+    text = """
+rclpy.init()
+node = Node("secured")
+os.environ.update(ROS_SECURITY_ENABLE="true", ROS_SECURITY_STRATEGY="Enforce")
+os.environ["ROS_SECURITY_KEYSTORE"] = "/none"
+for number in range(10):
+    high(float(number))
+folder = os.environ["TPC_FOLDER"]
+until(lambda: os.path.exists(folder) and len(os.listdir(folder)))
+time.sleep(0.2)
+high(10.0)
+print(node.get_name())
+"""
+    program = Program(tmp_path, domain, text)
+    done = program.run(TPC_SINK="topic")
+    assert (done.returncode, done.stdout) == (0, "secured\n")
+    (warning,) = done.stderr.splitlines()
+    assert warning.startswith("tpc: ROS 2 cannot be used, so reports are written to files in ")
+    assert "directory '/none/enclaves' does not exist" in warning
+    events = read(program.reports).events
+    assert events.cmp.tolist() == [float(number) for number in range(11)]
+
+
 def test_a_signal_while_the_hidden_node_is_made(domain, tmp_path, listener):
     text = """
 from pytpc.python_runtime import ros2_link

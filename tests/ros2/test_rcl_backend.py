@@ -13,6 +13,7 @@ from pytpc.base.paths import prefix
 from pytpc.ingest.reading import read
 from ros2_dialogue import Dialogue, Peer, compared, events
 from ros2_graph import PATIENCE_S, PYTHON, compile_on_rcl, ros2_env, wheels_env
+from ros2_reporting import wait_for
 
 HERE = Path(__file__).parent
 GUARD = "/robot1/guard"
@@ -388,6 +389,22 @@ def test_no_report_is_lost_in_a_file_when_the_node_is_killed(start: Start, tmp_p
     (file,) = (tmp_path / "reports").iterdir()
     assert file.name.startswith("robot1_guard-")
     assert list(read(file).events.cmp) == list(map(float, range(20000)))
+
+
+# The program's node has what it needs, and the hidden node comes after it, with the same enclave.
+def test_a_hidden_node_without_keys_leaves_the_node_alone(start: Start, tmp_path: Path) -> None:
+    node = start("--ros-args", "--enclave", "/arm", sink="topic")
+    for name, value in (("ENABLE", "true"), ("STRATEGY", "Enforce"), ("KEYSTORE", tmp_path)):
+        node.say(f"env ROS_SECURITY_{name} {value}")
+    node.say("report 1 0")
+    wait_for(lambda: list((tmp_path / "reports").glob("*.tpc")) != [])
+    node.say("report 5 0")
+    assert node.finish() == 0
+    why = [line for line in node.errors().splitlines() if "no reports are sent on a topic" in line]
+    assert len(why) == 1
+    assert f"{tmp_path}/enclaves/arm" in why[0]
+    (file,) = (tmp_path / "reports").iterdir()
+    assert list(read(file).events.cmp)[-5:] == [0, 1, 2, 3, 4]
 
 
 @pytest.mark.parametrize("sink", ["auto", "rosout"])
