@@ -16,6 +16,7 @@ from pytpc.base.paths import OWN_FOLDER
 from pytpc.cli.arguments import PATH, REFERENCE, as_object
 from pytpc.cli.launch_words import LaunchWords, MissionCommand, node_args
 from pytpc.cli.mission_options import MISSION_OPTIONS, MissionArguments
+from pytpc.cli.running_graph import ROS
 from pytpc.ros.node_start import command_of
 from pytpc.workspace.ros2 import MARKERS
 
@@ -45,11 +46,11 @@ def _is_mission(words: Sequence[str]) -> bool:
     """Whether the first word that is no option, and no option's value, is a workspace."""
     rest = iter(words)
     for word in rest:
-        if word == "--static":
+        if word in ("--static", "--ros"):
             next(rest, None)
         elif not word.startswith("-"):
             return Path(word).is_dir()
-        elif word != "--verbose" and not word.startswith("--static="):
+        elif word != "--verbose" and not word.startswith(("--static=", "--ros=")):
             return True
     return False
 
@@ -63,6 +64,7 @@ def _is_mission(words: Sequence[str]) -> bool:
     help="Name of the observer of a mission, used as a topic namespace.",
 )
 @REFERENCE
+@ROS
 @click.option("--no-keys", is_flag=True, help="Record and diagnose a mission without marking.")
 @click.option(
     "--static",

@@ -58,9 +58,9 @@ def test_a_mission_with_summaries_alone_is_diagnosed(tmp_path, monkeypatch):
     monkeypatch.setattr(run_mission, "recording_of", read)
     with click.Context(click.Command("run")):
         with pytest.raises(InputError, match="no reports arrived"):
-            run_mission._read(flown(tmp_path), tmp_path, tmp_path)
+            run_mission._read(flown(tmp_path), tmp_path, tmp_path, {})
         with pytest.raises(KeyboardInterrupt):
-            run_mission._read(flown(tmp_path, summaries_in_files=5), tmp_path, tmp_path)
+            run_mission._read(flown(tmp_path, summaries_in_files=5), tmp_path, tmp_path, {})
     assert asked == [tmp_path]
 
 
@@ -79,7 +79,7 @@ def test_ctrl_c_during_the_verdict_says_how_to_ask_for_it(tmp_path, monkeypatch,
 
 # A node with respawn="true" has no end, and the screen has.
 def test_a_node_that_dies_again_and_again_does_not_fill_the_screen():
-    notes = run_mission._Notes()
+    notes = run_mission._Notes({})
     notes.quiet("no reports yet", False)
     for status in range(1, 51):
         for name in ("camera-1", "arm-2"):

@@ -296,6 +296,38 @@ def test_a_node_that_dies_is_told_and_ends_the_mission(
     assert json.loads((tmp_path / "mission/run.json").read_text())["ended"] == "ended"
 
 
+# At once: at its first step; when it declares the parameter, by a rule or a file; before rclpy.
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [
+        ("-p dies_at:=1", "RuntimeError: the wheel is off"),
+        ("-p dies_at:=soon", "InvalidParameterTypeException"),
+        ("--params-file wrong.yaml", "InvalidParameterTypeException"),
+        ("--params-file none.yaml", "none.yaml"),
+    ],
+)
+def test_a_node_that_dies_at_once_is_told_with_its_status(
+    workspace: Path, env: dict[str, str], tmp_path: Path, value: str, said: str
+) -> None:
+    (tmp_path / "wrong.yaml").write_text("/robot1/guard: {ros__parameters: {speed_limit: fast}}")
+    words = ["guard", "speed_guard", "-o", "mission", "--", "--ros-args", *value.split()]
+    out = told(env, tmp_path, "run", "--ros", "2", "--no-keys", workspace, *words, status=1)
+    died, error = [line for line in out.splitlines() if " died (" in line]
+    assert died.startswith("pytpc: warning: the node speed_guard died (exit status 1)")
+    assert error == (
+        "pytpc: error: mission: no reports arrived, so there is nothing to diagnose: the node"
+        " speed_guard died (exit status 1)"
+    )
+    assert said in out
+
+
+def test_the_ros_of_a_run_can_be_named(
+    workspace: Path, env: dict[str, str], tmp_path: Path
+) -> None:
+    words = ["run", "--ros", "1", "--no-keys", workspace, "guard", "guard.launch.py"]
+    assert "roslaunch" in told(env, tmp_path, *words, status=1)
+
+
 @pytest.mark.parametrize("later", ["looking", "recording"])
 def test_ctrl_c_at_any_moment_leaves_a_whole_recording(
     workspace: Path, env: dict[str, str], tmp_path: Path, later: str
