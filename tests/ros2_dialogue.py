@@ -8,7 +8,7 @@ import subprocess
 from pathlib import Path
 from typing import Any
 
-from ros2_graph import PATIENCE_S
+from patience import PATIENCE_S
 
 
 class Dialogue:

@@ -6,12 +6,20 @@ import os
 import subprocess
 from pathlib import Path
 
+import pytest
+
+from patience import PATIENCE_S
 from pytpc.base.paths import prefix, project_root
 
 PYTHON = project_root() / ".venv-ros2/bin/python"
 """The interpreter with the wheels of ROS 2, which `tools/setup test` installs."""
-PATIENCE_S = 600.0
-"""How long a test waits for what must come, on a machine that others use, too."""
+needs_wheels = pytest.mark.skipif(
+    not PYTHON.exists(), reason="the wheels of ROS 2 are not installed"
+)
+needs_backend = pytest.mark.skipif(
+    not (prefix() / "lib/libtpc_log_ros2.so").exists(),
+    reason="the log library was built without ROS 2",
+)
 
 
 def ros2_env(domain: dict[str, str], **more: str) -> dict[str, str]:

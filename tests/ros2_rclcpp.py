@@ -6,8 +6,11 @@ import os
 import subprocess
 from pathlib import Path
 
-from pytpc.base.paths import installed, prefix
-from ros2_graph import PATIENCE_S
+import pytest
+
+from patience import PATIENCE_S
+from pytpc.base.paths import ROS_PREFIXES, installed, prefix
+from pytpc.workspace.ros2 import AMENT, has_cmake_package
 
 LIBRARIES = (
     *("rclcpp", "rcl", "rcutils", "rcpputils", "rmw", "rosidl_runtime_c", "rosidl_typesupport_cpp"),
@@ -16,15 +19,22 @@ LIBRARIES = (
 MESSAGES = ("std_msgs", "rcl_interfaces", "builtin_interfaces", "statistics_msgs")
 
 
+PACKAGES = ("rclcpp", "rclcpp_action", "rclcpp_components", "rclcpp_lifecycle")
+
+
 def rclcpp_prefix() -> Path | None:
-    """The folder of a ROS 2 that has rclcpp and containers of components; None without one."""
-    listed = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
-    places = [*map(Path, filter(None, listed)), *sorted(Path("/opt/ros").glob("*"))]
-    wanted = "lib/rclcpp_components/component_container_mt", "include/rclcpp/rclcpp/rclcpp.hpp"
-    return next((one for one in places if all((one / name).is_file() for name in wanted)), None)
+    """The folder of a ROS 2 that was sourced, or is in /opt/ros, and has rclcpp; or None."""
+    listed = filter(None, os.environ.get(AMENT, "").split(os.pathsep))
+    places = [*map(Path, listed), *ROS_PREFIXES]
+    return next(
+        (one for one in places if all(has_cmake_package(name, [one]) for name in PACKAGES)), None
+    )
 
 
 ROS = rclcpp_prefix()
+needs_rclcpp = pytest.mark.skipif(
+    ROS is None, reason=f"no {', '.join(PACKAGES)} in {AMENT} or /opt/ros (source its setup)"
+)
 
 
 def rclcpp_env() -> dict[str, str]:

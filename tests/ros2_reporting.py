@@ -5,13 +5,12 @@ from __future__ import annotations
 import json
 import subprocess
 import threading
-import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
+from patience import PATIENCE_S, wait_for
 from pytpc.ros.node_start import RUN
-from ros2_graph import PATIENCE_S, PYTHON, ros2_env
+from ros2_graph import PYTHON, ros2_env
 
 KEY = "00000001-0000-5000-8000-000000000001"
 LINE = "    return x > 6.5"
@@ -115,14 +114,6 @@ class Listener:
         self._thread.join(10)
         if self._process.stdout is not None:
             self._process.stdout.close()
-
-
-def wait_for(done: Callable[[], bool]) -> None:
-    """Wait until it is so."""
-    deadline = time.monotonic() + PATIENCE_S
-    while not done():
-        assert time.monotonic() < deadline
-        time.sleep(0.02)
 
 
 class Program:

@@ -7,6 +7,7 @@
 
 #include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/ADT/Statistic.h"
+#include "llvm/Analysis/ValueTracking.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Operator.h"
@@ -64,6 +65,32 @@ void PointsToSolver::addReturned(const CallBase &Call, Node &N) {
   }
 }
 
+/// Adds the sources of \p Extract: the pointers that may have been put into
+/// that part of a struct that is kept in registers.
+void PointsToSolver::addExtracted(const ExtractValueInst &Extract, Node &N) {
+  // A pair of an iterator and whether something was inserted.
+  const auto *Pair = dyn_cast<CallBase>(Extract.getAggregateOperand());
+  if (Pair && Rules.container(*Pair)) {
+    N.Container = containerOf(*Pair);
+    return;
+  }
+  SmallVector<const Value *, 4> Work{Extract.getAggregateOperand()};
+  SmallPtrSet<const Value *, 8> Seen;
+  while (!Work.empty()) {
+    const Value *Whole = Work.pop_back_val();
+    if (!Seen.insert(Whole).second)
+      continue;
+    if (const Value *Part =
+            FindInsertedValue(const_cast<Value *>(Whole), Extract.getIndices()))
+      N.Sources.push_back(Part);
+    else if (const auto *Phi = dyn_cast<PHINode>(Whole))
+      append_range(Work, Phi->incoming_values());
+    else if (const auto *Call = dyn_cast<CallBase>(Whole))
+      for (const Function *Callee : Calls.callees(*Call))
+        append_range(Work, returnedBy(*Callee).Others);
+  }
+}
+
 /// Notes the class of the container if \p Call moves elements from one to
 /// another: references to them go along.
 void PointsToSolver::noteMove(const CallBase &Call) {
@@ -86,13 +113,9 @@ void PointsToSolver::makeNode(Instruction &I) {
     N.Container = containerOf(*Call);
   else if (Call)
     addReturned(*Call, N);
-  else if (const auto *Extract = dyn_cast<ExtractValueInst>(&I)) {
-    // A pair of an iterator and whether something was inserted.
-    const auto *Pair = dyn_cast<CallBase>(Extract->getAggregateOperand());
-    if (!Pair || !Rules.container(*Pair))
-      return;
-    N.Container = containerOf(*Pair);
-  } else if (!isa<LoadInst>(&I))
+  else if (const auto *Extract = dyn_cast<ExtractValueInst>(&I))
+    addExtracted(*Extract, N);
+  else if (!isa<LoadInst>(&I))
     return;
   Nodes.push_back(std::move(N));
 }

@@ -65,6 +65,7 @@ private:
   void noteMove(const llvm::CallBase &Call);
   const Returned &returnedBy(const llvm::Function &F);
   void addReturned(const llvm::CallBase &Call, Node &N);
+  void addExtracted(const llvm::ExtractValueInst &Extract, Node &N);
   void findFilled();
   bool findsComplete(const Node &Load) const;
   bool hasOwnCallers(const llvm::Argument &Arg);

@@ -95,6 +95,8 @@ private:
   void enterValue(const Value *V);
   void enterPointer(const Value *V);
   void enterMemory(const Value *Pointer, const Instruction &At);
+  void enterLocations(const Locations &Read, const Value *Pointer,
+                      const Instruction &At);
   void enterMerge(const PHINode &Phi);
   void enterArguments(const CallBase &Call);
   void enterResult(CallBase &Call);
@@ -274,6 +276,12 @@ void Slicer::enterMemory(const Value *Pointer, const Instruction &At) {
   Locations Read = Pointers.resolve(Pointer, true);
   for (Location &L : Read)
     L.widen();
+  enterLocations(Read, Pointer, At);
+}
+
+/// What is at \p Read matters where \p At reads it by \p Pointer.
+void Slicer::enterLocations(const Locations &Read, const Value *Pointer,
+                            const Instruction &At) {
   for (const Location &L : Read) {
     if (Writes.isSharedBy(L, At, Pointer) && !SeenWritten.insert(L).second)
       continue;
@@ -309,9 +317,24 @@ static bool isUsed(const Value *Arg, const CallBase &Call, const Rule *Row) {
          Arg != objectOf(Call, *Row);
 }
 
+/// True if \p Call returns an element of a container itself, and no reference
+/// to it: those of a std::vector<bool> are bits.
+static bool returnsElement(const CallBase &Call, const RuleMatches &Rules) {
+  static constexpr StringRef Names[] = {"operator[]", "at", "front", "back"};
+  return Rules.container(Call) && Call.getType()->isIntegerTy() &&
+         is_contained(Names, unscoped(qualifiedName(
+                                 Call.getCalledFunction()->getName())));
+}
+
 /// The arguments of \p Call matter.
 void Slicer::enterArguments(const CallBase &Call) {
   const Rule *Row = Rules.match(Call);
+  if (returnsElement(Call, Rules)) {
+    const Value *Container = containerOf(Call);
+    Locations Elements;
+    Pointers.addElements(Container, Elements);
+    enterLocations(Elements, Container, Call);
+  }
   for (const Use &Arg : Call.args()) {
     enterValue(Arg);
     if (Arg->getType()->isPointerTy() && !Writes.replaces(Call, Arg) &&

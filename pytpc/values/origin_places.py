@@ -13,13 +13,12 @@ from pytpc.base.errors import InputError
 from pytpc.base.source_bytes import read_bytes
 from pytpc.values.installed import source_of
 from pytpc.values.launch_xml import inner_text, read_tags
-from pytpc.values.origins import Origin
+from pytpc.values.origins import IN_ARGS, Origin
 from pytpc.values.trace import Trace
 from pytpc.values.yaml_tree import YamlSetting, read_yaml, settings
 
 _ONE_ARGUMENT = re.compile(r"\s*\$\(arg\s+([^)\s]+)\s*\)\s*")
 _COMMAND_LINE = "command line"
-IN_ARGS = "in the args of the node"
 
 
 class _Files:

@@ -18,6 +18,8 @@ ORIGINS_FILE = "origins.json"
 PARAMS_FILE = "params.yaml"
 START_FILE = "params_start.yaml"
 SCHEMA = 1
+IN_ARGS = "in the args of the node"
+_QOS = "/qos_overrides."
 
 OriginKind = Literal["yaml", "launch", "argument", "default", "runtime", "unknown"]
 
@@ -56,9 +58,26 @@ class Origin:
         """``config/params.yaml:12``, ``default in the code``, ``set at runtime``."""
         if self.path is not None:
             return f"{self.path}:{self.lineno}" if self.lineno else str(self.path)
+        if self.kind == "launch":
+            return "args of the node" if self.note.startswith(IN_ARGS) else "launch file"
         return {"default": "default in the code", "runtime": "set at runtime"}.get(
             self.kind, "unknown"
         )
+
+
+def split_name(parameter: str) -> tuple[str, str]:
+    """The node and the name of a parameter; the node is empty where only a name is given.
+
+    >>> split_name("/robot1/guard/limits.min"), split_name("min")
+    (('/robot1/guard', 'limits.min'), ('', 'min'))
+    >>> split_name("/guard/qos_overrides./scan.publisher.depth")
+    ('/guard', 'qos_overrides./scan.publisher.depth')
+    """
+    node, qos, topic = parameter.partition(_QOS)
+    if qos:
+        return node, f"{qos[1:]}{topic}"
+    node, _, name = parameter.rpartition("/")
+    return node, name
 
 
 def read_origins(mission: Path) -> Mapping[str, Origin]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pytpc.base.closest import did_you_mean
 from pytpc.base.wording import listed
 from pytpc.values.new_value import Refused
+from pytpc.values.origins import split_name
 from pytpc.values.rcl_edit import add_to_params, edit_params, store_of
 from pytpc.values.rcl_params import ANY_NODE, PARAMS_KEY, Held, ParamsStore, Slot
 from pytpc.values.yaml_edit import Edit
@@ -33,7 +34,7 @@ def plan_params(
         Refused: no value or several are meant, or the change is refused.
     """
     store = store_of(text)
-    node, name = split_name(parameter)
+    node, name = split_given(parameter)
     names = sorted({f"{e.pattern}/{slot.name}" for e, slot, _ in store.all_written()})
     node, held = _held(store, node, name, names, parameter)
     if held is None:
@@ -52,19 +53,16 @@ def plan_params(
     )
 
 
-def split_name(parameter: str) -> tuple[str, str]:
-    """The node and the name of a parameter; the node is empty where only a name is given.
+def split_given(parameter: str) -> tuple[str, str]:
+    """``split_name`` of what a user gives, who may also name the keys of the file.
 
-    >>> split_name("/robot1/guard/limits.min"), split_name("min")
-    (('/robot1/guard', 'limits.min'), ('', 'min'))
-    >>> split_name("/guard/ros__parameters/limits/min")
+    >>> split_given("/guard/ros__parameters/limits/min")
     ('/guard', 'limits.min')
     """
     if _KEY in parameter:
         node, _, name = parameter.partition(_KEY)
         return node, name.replace("/", ".")
-    node, _, name = parameter.rpartition("/")
-    return node, name
+    return split_name(parameter)
 
 
 def _held(

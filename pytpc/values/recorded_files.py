@@ -17,7 +17,7 @@ from pytpc.base.regular_files import real_path
 from pytpc.base.source_bytes import read_bytes
 from pytpc.values.installed import SYSTEM_FOLDERS
 from pytpc.values.journal import JournalEntry, digest
-from pytpc.values.origins import Origin
+from pytpc.values.origins import Origin, split_name
 from pytpc.values.rcl_params import PARAMS_KEY, NodeEntry
 from pytpc.workspace.packages import MANIFEST
 
@@ -135,7 +135,7 @@ def check_keys(origin: Origin) -> None:
 def _check_params_keys(origin: Origin) -> None:
     """``check_keys`` for a params file of ROS 2."""
     at = origin.keys.index(PARAMS_KEY)
-    node, _, name = origin.name.rpartition("/")
+    node, name = split_name(origin.name)
     entry = NodeEntry("/".join(key.rstrip("/") for key in origin.keys[:at]))
     if not entry.fits(node) or name != ".".join(origin.keys[at + 1 :]):
         raise _other_key("/".join(origin.keys), origin)

@@ -15,6 +15,7 @@ from pytpc.values.origins import (
     PARAMS_FILE,
     START_FILE,
     Origin,
+    split_name,
     write_origins,
 )
 from pytpc.values.ros2_trace import trace_any_launch
@@ -29,7 +30,10 @@ BY_A_NODE = (
     "set by a program, not by the launch file; a node with dynamic_reconfigure writes all of its"
     " values when it starts"
 )
-NOT_SEEN = "the command line of its node is not known; is the node on another machine?"
+NOT_SEEN = (
+    "no command line with --ros-args on this machine is that of its node; the default, unless"
+    " the node runs elsewhere"
+)
 MISSION_PATIENCE_S = 20.0
 _OF_ROS2 = "ros__parameters"
 _ENV_NAMES = (
@@ -131,7 +135,7 @@ def _declared(origin: Origin, trace: Trace | None, at_start: Mapping[str, object
     if not same_value(before, origin.value):
         note = f"it was {before!r} when the recording began"
         return replace(origin, kind="runtime", note=note)
-    if origin.name.rpartition("/")[0] in trace.declaring:
+    if split_name(origin.name)[0] in trace.declaring:
         return replace(origin, kind="default", note="")
     return replace(origin, kind="unknown", note=NOT_SEEN)
 

@@ -14,7 +14,7 @@ from pytpc.values.apply import decoded
 from pytpc.values.journal import digest
 from pytpc.values.new_value import Refused
 from pytpc.values.origins import Origin
-from pytpc.values.params_target import split_name
+from pytpc.values.params_target import split_given
 from pytpc.values.rcl_edit import store_of
 from pytpc.values.ros2_trace import Fields, NodeOrigins
 
@@ -125,7 +125,7 @@ def origins_in_params(path: Path, parameter: str | None = None) -> dict[str, Ori
         InputError: the file cannot be read, or rcl refuses it.
     """
     step = _file(path)
-    nodes = [split_name(parameter)[0]] if parameter and parameter.startswith("/") else []
+    nodes = [split_given(parameter)[0]] if parameter and parameter.startswith("/") else []
     try:
         entries = store_of(step["text"]).entries
     except Refused:

@@ -17,8 +17,7 @@ from pytpc.base.errors import InputError, MissingToolError
 from pytpc.base.source_bytes import read_bytes
 from pytpc.values.installed import source_of
 from pytpc.values.launch_kinds import is_ros2_launch
-from pytpc.values.origin_places import IN_ARGS
-from pytpc.values.origins import Origin
+from pytpc.values.origins import IN_ARGS, Origin
 from pytpc.values.rcl_params import Held, NodeEntry, ParamsError, ParamsStore, Written
 from pytpc.values.trace import (
     LaunchNode,

@@ -20,8 +20,14 @@ from pytpc.values.launch_edit import NewText, add_param, edit_argument, edit_inl
 from pytpc.values.launch_kinds import is_ros2_launch
 from pytpc.values.launch_xml import read_tags
 from pytpc.values.new_value import Refused, guessed, read_value
-from pytpc.values.origin_places import IN_ARGS
-from pytpc.values.origins import ORIGINS_FILE, Origin, origins_file, read_document, read_origins
+from pytpc.values.origins import (
+    IN_ARGS,
+    ORIGINS_FILE,
+    Origin,
+    origins_file,
+    read_document,
+    read_origins,
+)
 from pytpc.values.params_target import plan_params
 from pytpc.values.rcl_edit import edit_params
 from pytpc.values.rcl_params import PARAMS_KEY, is_params_text

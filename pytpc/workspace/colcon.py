@@ -30,6 +30,8 @@ _TAIL_LINES = 25
 _FULL = 64 * 1024
 _OWN_OPTIONS = ("--build-base", "--install-base", "--log-base", "--paths", "--base-paths")
 _HANDLERS = ("console_direct+", "console_cohesion-", "console_stderr-", "summary-")
+_ALL_OF_COLCON = "logger_all.log"
+_ERROR = re.compile(r"\[[0-9.]+s\] ERROR:colcon\.[^:]*:(.*)")
 _EVENT = re.compile(
     r"^\[[0-9.]+\] \((?P<name>[^)]*)\) Job(?P<what>Ended|Skipped): (?P<data>\{.*\})$"
 )
@@ -323,6 +325,8 @@ def _raise_for_failed_package(log: Path) -> None:
         if status in _NO_FAULT:
             continue
         folder = log / name
+        if not folder.is_dir() and (why := _own_error(log)):
+            raise RunError(f"colcon itself fails: {why}", log / _ALL_OF_COLCON)
         tail = _tail(folder / "stderr.log") or _tail(folder / "stdout.log")
         raise BuildError(
             f"package {name} does not build (status {status}); this is its output",
@@ -331,6 +335,13 @@ def _raise_for_failed_package(log: Path) -> None:
             tail,
             finished,
         )
+
+
+def _own_error(log: Path) -> str:
+    """The last error of colcon itself, which ran no command; empty if there is none."""
+    path = log / _ALL_OF_COLCON
+    said = path.read_text("utf-8", "replace").splitlines() if path.is_file() else []
+    return next((found[1] for line in reversed(said) if (found := _ERROR.match(line))), "")
 
 
 def _tail(path: Path) -> list[str]:

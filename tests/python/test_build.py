@@ -354,6 +354,19 @@ def test_a_package_that_fails_is_named_with_the_end_of_its_errors(
     assert not (workspace / ".tpc/static.json").exists()
 
 
+def test_a_fault_of_colcon_is_not_blamed_on_a_package(workspace: Path, colcon: FakeColcon) -> None:
+    colcon.logs("[0.1] (face) JobEnded: {'identifier': 'face', 'rc': 1}\n")
+    log = (
+        "[0.9s] ERROR:colcon.colcon_core.entry_point:cannot import name 'X' from 'em'\nTraceback\n"
+    )
+    colcon.writes("log/build_1/logger_all.log", f"[0.1s] INFO:colcon:begins\n{log}")
+    colcon.lines.append("sys.exit(1)")
+    with pytest.raises(RunError) as caught:
+        build_workspace(workspace)
+    path = workspace / ".tpc/log/build_1/logger_all.log"
+    assert str(caught.value) == f"{path}: colcon itself fails: cannot import name 'X' from 'em'"
+
+
 def test_a_failure_of_colcon_itself_is_not_blamed_on_an_old_log(
     workspace: Path, colcon: FakeColcon
 ) -> None:

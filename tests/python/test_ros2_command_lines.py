@@ -55,6 +55,17 @@ def test_a_name_on_the_command_line_is_enough(lines, tmp_path):
     assert places(lines, others) is None
 
 
+def test_a_value_on_the_command_line_is_said_to_be_there(lines, tmp_path):
+    lines.look([started(tmp_path, 1, "--params-file", "b.yaml", "-p", "limit:=4.5")])
+    # Its name has a slash, and still it is a parameter of /robot1/guard.
+    depth = "/robot1/guard/qos_overrides./scan.publisher.depth"
+    values = {**GUARD, depth: 10}
+    found = origins_of(lines.trace(values, None, is_own=False), values, values)
+    limit = found["/robot1/guard/limit"]
+    assert (limit.words(), limit.overridden) == ("args of the node", (f"{tmp_path}/b.yaml:1",))
+    assert found[depth].words() == "default in the code"
+
+
 def test_two_processes_that_may_be_it_must_agree(lines, tmp_path):
     for pid in (1, 2):
         lines.look([started(tmp_path, pid, "--params-file", "a.yaml")])
@@ -68,7 +79,7 @@ def test_a_file_that_launch_has_written_is_no_place(lines, tmp_path):
     lines.look([started(tmp_path, 1, "--params-file", "launch_params_x1")])
     trace = lines.trace(GUARD, None, is_own=False)
     limit = origins_of(trace, GUARD, GUARD)["/robot1/guard/limit"]
-    assert (limit.kind, limit.path) == ("launch", None)
+    assert (limit.kind, limit.path, limit.words()) == ("launch", None, "launch file")
     assert "pytpc record --launch FILE" in limit.note
     assert trace.files == {}
 

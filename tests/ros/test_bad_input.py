@@ -13,6 +13,7 @@ import pytest
 from ill_master import IllMaster, Illness
 from test_sinks import graph, nodes
 
+from patience import PATIENCE_S
 from pytpc.ros.ros1.graph import RosGraph
 
 __all__ = ["graph", "nodes"]
@@ -30,7 +31,7 @@ def warnings_of(graph: RosGraph, nodes: Path, *options: str, **env: str) -> list
     folder = str(graph.folder / "files")
     command = [str(nodes / "steady"), *options]
     process = graph.start("steady", command, env={**kept, "TPC_FOLDER": folder, **env})
-    assert process.popen.wait(60) == 0
+    assert process.popen.wait(PATIENCE_S) == 0
     said = process.log.read_text().splitlines()
     (turns,) = filter(None, map(TURNS.match, said))
     assert float(turns["longest"]) < LONGEST_MS

@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 from recorded_robot import make_package, make_workspace, processes_of, shell, wait_until
 
+from patience import PATIENCE_S, wait_for
 from pytpc.base.errors import RunError
 from pytpc.build.build import workspace_env
 from pytpc.ingest.reading import read
@@ -113,7 +114,7 @@ def test_other_ends(robot: Path, tmp_path: Path, how: str):
         else:
             os.close(terminal.child)
             os.close(terminal.master)
-            assert terminal.process.wait(60) == 0
+            assert terminal.process.wait(PATIENCE_S) == 0
     assert complete(tmp_path)["ended"] == "interrupted"
 
 
@@ -136,14 +137,6 @@ def is_free(folder: Path) -> bool:
             return True
     except RunError:
         return False
-
-
-def wait_for(what: Callable[[], bool]) -> None:
-    """Until something is true, on a machine that others use, too."""
-    until = time.monotonic() + 600.0
-    while not what():
-        assert time.monotonic() < until
-        time.sleep(0.1)
 
 
 # Nothing can be done at kill -9, so the recorder does it: it closes the bag and ends the graph.

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from test_record_ros2 import env, told
 
-__all__ = ["env"]
+from ros2_commands import told
+
 RECORD = ("record", "-o", "none")
 APPLY = ("apply", "--live", "/a/b", "1")
 RMW = "RMW_IMPLEMENTATION"

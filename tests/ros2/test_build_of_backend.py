@@ -6,12 +6,11 @@ import os
 import subprocess
 from pathlib import Path
 
-import pytest
-
+from patience import PATIENCE_S
 from pytpc.base.paths import project_root
-from ros2_graph import PATIENCE_S, PYTHON
+from ros2_graph import PYTHON, needs_wheels
 
-pytestmark = pytest.mark.skipif(not PYTHON.exists(), reason="the wheels of ROS 2 are not installed")
+pytestmark = needs_wheels
 WHEELS = PYTHON.parents[1]
 """A folder with all packages in one, as with `colcon build --merge-install`."""
 

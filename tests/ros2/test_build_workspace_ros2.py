@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from patience import PATIENCE_S
 from pytpc.base.paths import project_root
 from pytpc.build.build import BuildResult, build_workspace
 from pytpc.build.nodes_env import nodes_env
@@ -21,7 +22,7 @@ from pytpc.ingest.reading import read
 from pytpc.ros.node_start import with_python
 from pytpc.workspace.colcon import BuildError, BuildOptions
 from pytpc.workspace.ros2 import has_cmake_package
-from ros2_graph import PATIENCE_S, PYTHON, ros2_env
+from ros2_graph import PYTHON, ros2_env
 from ros2_workspace import make_ros2_workspace
 
 # The node compares these with 6.5.

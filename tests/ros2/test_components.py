@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+from patience import PATIENCE_S, wait_for
 from pytpc.api.live_reports import Reports
-from pytpc.base.paths import prefix
 from pytpc.cli.main import main
 from pytpc.diagnosis.full_names import with_full_names
 from pytpc.diagnosis.results.live import Seen
@@ -25,22 +25,15 @@ from pytpc.static.link_unit import Comparison
 from pytpc.static.parameters import base_key, resolved
 from pytpc.static.static_info import collect
 from ros2_dialogue import Peer, events
-from ros2_graph import PATIENCE_S, ros2_env
-from ros2_rclcpp import ROS, compile_on_rclcpp, rclcpp_env, ros_python
-from ros2_reporting import wait_for
+from ros2_graph import needs_backend, ros2_env
+from ros2_rclcpp import ROS, compile_on_rclcpp, needs_rclcpp, rclcpp_env, ros_python
 
 HERE = Path(__file__).parent
 CONTAINER = "/cell/holder"
 FRONT, REAR, FILTERED = "/cell/front", "/cell/rear", "/cell/filtered"
 COMPONENTS = "cell::Gauge", "cell::Filtered", "cell::Pump"
 
-pytestmark = [
-    pytest.mark.skipif(ROS is None, reason="no ROS 2 with rclcpp is installed"),
-    pytest.mark.skipif(
-        not (prefix() / "lib/libtpc_log_ros2.so").exists(),
-        reason="the log library was built without ROS 2",
-    ),
-]
+pytestmark = [needs_rclcpp, needs_backend]
 
 
 @pytest.fixture(scope="module")

@@ -7,20 +7,17 @@ from pathlib import Path
 
 import pytest
 
-from pytpc.base.paths import prefix
+from patience import PATIENCE_S
 from pytpc_evaluation.demo.demo import failures
 from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE_ROS2
 from pytpc_evaluation.demo.ros2_controller import NODE, PACKAGE, has_rclcpp, with_controller
 from pytpc_evaluation.demo.ros2_missions import run_ros2_treatment
 from pytpc_evaluation.demo.ros2_robot import Ros2Robot, prepared
-from ros2_graph import PATIENCE_S
+from ros2_graph import needs_backend
 
 pytestmark = [
     pytest.mark.skipif(not has_rclcpp(), reason="no ROS 2 with rclcpp was sourced"),
-    pytest.mark.skipif(
-        not (prefix() / "lib/libtpc_log_ros2.so").exists(),
-        reason="the log library was built without ROS 2",
-    ),
+    needs_backend,
 ]
 FIELDS = ("unit", "file", "line", "parameter", "type", "relation")
 

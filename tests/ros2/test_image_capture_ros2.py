@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from patience import PATIENCE_S
 from pytpc.ros.mission_run import MARK_TOPICS
 from pytpc.static.parameters import same_parameter
 from pytpc.values.origins import read_origins
@@ -15,7 +16,6 @@ from pytpc_evaluation.demo.demo import TreatedMission, failures
 from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE_ROS2
 from pytpc_evaluation.demo.ros2_missions import run_ros2_treatment
 from pytpc_evaluation.demo.ros2_robot import Ros2Robot, prepared
-from ros2_graph import PATIENCE_S
 
 CHANGED = "type1_face_detection_threshold"
 

@@ -15,9 +15,10 @@ import pytest
 from launch_files import PYTHON as LAUNCH_PY
 from launch_files import XML, write_launch_files
 
+from patience import PATIENCE_S
 from pytpc.base.errors import InputError
 from pytpc.values.target import Target, chosen, plan_origin, read_target
-from ros2_graph import PATIENCE_S, PYTHON, ros2_env
+from ros2_graph import PYTHON, ros2_env
 
 
 @pytest.fixture(scope="module")

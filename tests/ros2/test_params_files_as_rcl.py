@@ -11,8 +11,9 @@ import random
 import subprocess
 from pathlib import Path
 
+from patience import PATIENCE_S
 from pytpc.values.rcl_params import ParamsError, ParamsStore
-from ros2_graph import PATIENCE_S, PYTHON, ros2_env
+from ros2_graph import PYTHON, ros2_env
 
 PROGRAM = Path(__file__).with_name("read_params.py")
 NODES = [["/", "guard"], ["/robot1", "guard"], ["/robot1/arm", "guard"], ["/robot2", "other"]]

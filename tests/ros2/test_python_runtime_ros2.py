@@ -9,9 +9,10 @@ from collections.abc import Iterator
 
 import pytest
 
+from patience import wait_for
 from pytpc.ingest.reading import read
 from ros2_graph import PYTHON, ros2_env
-from ros2_reporting import KEY, Listener, Program, ended, wait_for
+from ros2_reporting import KEY, Listener, Program, ended
 
 
 @pytest.fixture(scope="module")

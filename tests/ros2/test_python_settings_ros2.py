@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 
+from patience import wait_for
 from pytpc.ingest.reading import read
 from ros2_graph import run_python
-from ros2_reporting import Program, ended, wait_for
+from ros2_reporting import Program, ended
 
 SET = """\
 import json, rclpy, sys

@@ -9,23 +9,17 @@ from pathlib import Path
 
 import pytest
 
+from patience import PATIENCE_S, wait_for
 from pytpc.base.paths import prefix
 from pytpc.ingest.reading import read
 from ros2_dialogue import Dialogue, Peer, compared, events
-from ros2_graph import PATIENCE_S, PYTHON, compile_on_rcl, ros2_env, wheels_env
-from ros2_reporting import wait_for
+from ros2_graph import PYTHON, compile_on_rcl, needs_backend, needs_wheels, ros2_env, wheels_env
 
 HERE = Path(__file__).parent
 GUARD = "/robot1/guard"
 SETTINGS = f"{GUARD}/_tpc"
 
-pytestmark = [
-    pytest.mark.skipif(not PYTHON.exists(), reason="the wheels of ROS 2 are not installed"),
-    pytest.mark.skipif(
-        not (prefix() / "lib/libtpc_log_ros2.so").exists(),
-        reason="the log library was built without ROS 2",
-    ),
-]
+pytestmark = [needs_wheels, needs_backend]
 
 
 @pytest.fixture(scope="module")

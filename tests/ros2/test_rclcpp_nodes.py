@@ -15,35 +15,26 @@ from pathlib import Path
 
 import pytest
 
-from pytpc.base.paths import ROS_PREFIXES, prefix
+from patience import PATIENCE_S, wait_for
 from pytpc.build.build import BuildResult, build_workspace
 from pytpc.build.nodes_env import nodes_env
 from pytpc.ingest.reading import read
-from pytpc.workspace.ros2 import AMENT, has_cmake_package
-from ros2_graph import PATIENCE_S, ros2_env
-from ros2_reporting import Listener, wait_for
+from pytpc.workspace.ros2 import AMENT
+from ros2_graph import needs_backend, ros2_env
+from ros2_rclcpp import ROS, needs_rclcpp
+from ros2_reporting import Listener
 
 CELL = Path(__file__).parent / "cell"
-_SOURCED = [Path(one) for one in os.environ.get(AMENT, "").split(":") if one]
-PLACES = [one for one in (*_SOURCED, *ROS_PREFIXES) if has_cmake_package("rclcpp", [one])]
-
-pytestmark = [
-    pytest.mark.skipif(not PLACES, reason=f"no rclcpp in {AMENT} or /opt/ros (source its setup)"),
-    pytest.mark.skipif(
-        not (prefix() / "lib/libtpc_log_ros2.so").exists(),
-        reason="the log library was built without ROS 2",
-    ),
-]
+pytestmark = [needs_rclcpp, needs_backend]
 
 
 def sourced(domain: dict[str, str], **more: str) -> dict[str, str]:
     """The environment of a terminal in which the ROS 2 with rclcpp was sourced."""
-    ros = PLACES[0]
     return ros2_env(
         domain,
-        PATH=f"{ros}/bin:{os.defpath}",
-        LD_LIBRARY_PATH=f"{ros}/lib",
-        **{AMENT: str(ros), "CMAKE_PREFIX_PATH": str(ros)},
+        PATH=f"{ROS}/bin:{os.defpath}",
+        LD_LIBRARY_PATH=f"{ROS}/lib",
+        **{AMENT: str(ROS), "CMAKE_PREFIX_PATH": str(ROS)},
         **more,
     )
 

@@ -5,7 +5,6 @@ They are built and run where rclcpp is installed: no package registry has it.
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 
 import pytest
@@ -13,16 +12,16 @@ import pytest
 from pytpc.build.build import workspace_env
 from pytpc.ingest.reading import read
 from pytpc.recording.events import Events
+from ros2_rclcpp import needs_rclcpp
 from suite.build import Suite, build_suite, instrumented, link_plain
 from suite.expectations import RCLCPP_PACKAGE, Verdict, nodes
 from suite.known import RCLCPP_KNOWN, RCLCPP_REPORTS_KNOWN
-from suite.rclcpp_run import Heard, run_nodes, without_rclcpp
+from suite.rclcpp_run import Heard, run_nodes
 from suite.report import judge_all
 from suite.reported import not_as_listed, raw
 
 NODES = nodes(RCLCPP_PACKAGE)
-WHY_NOT = without_rclcpp(os.environ)
-pytestmark = pytest.mark.skipif(WHY_NOT is not None, reason=str(WHY_NOT))
+pytestmark = needs_rclcpp
 
 
 @dataclass

@@ -4,20 +4,16 @@ from __future__ import annotations
 
 import contextlib
 import json
-import signal
 import subprocess
-import sys
 import time
-from collections.abc import Iterator
 from pathlib import Path
 
-import pytest
-
-from pytpc.base.paths import project_root
+from patience import PATIENCE_S
 from pytpc.ingest.reading import read
 from pytpc.recording.parameter_values import ParameterValues
 from pytpc.static.static_info import StaticInfo
-from ros2_graph import PATIENCE_S, PYTHON, ros2_env
+from ros2_commands import interrupted, pytpc, recorder, running, told
+from ros2_graph import PYTHON
 from terminals import Terminal
 
 NODE = Path(__file__).with_name("guard_node.py")
@@ -38,78 +34,12 @@ for step in range(10):
 """
 
 
-@pytest.fixture
-def env(domain: dict[str, str], tmp_path: Path) -> dict[str, str]:
-    runtime = tmp_path / "run"
-    runtime.mkdir(mode=0o700)
-    more = {"XDG_RUNTIME_DIR": str(runtime), "HOME": str(tmp_path)}
-    return ros2_env(domain, PYTHONPATH=str(project_root()), **more)
-
-
-def pytpc(*words: str) -> list[str]:
-    return [sys.executable, "-m", "pytpc", *words]
-
-
-@contextlib.contextmanager
-def running(command: list[str], env: dict[str, str], folder: Path) -> Iterator[subprocess.Popen]:
-    with subprocess.Popen(
-        command,
-        env=env,
-        cwd=folder,
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    ) as process:
-        try:
-            yield process
-        finally:
-            process.kill()
-
-
 @contextlib.contextmanager
 def guard(env: dict[str, str], folder: Path, rate: int, seconds: float, *key: str):
     command = [str(PYTHON), str(NODE), str(rate), str(seconds), *key]
-    node_env = {name: value for name, value in env.items() if name != "PYTHONPATH"}
-    with running(command, node_env, folder) as node:
+    with running(command, env, folder) as node:
         assert node.stdout.readline() == "ready\n", node.stderr.read()
         yield node
-
-
-@contextlib.contextmanager
-def recorder(env: dict[str, str], folder: Path, *words: str):
-    with running(pytpc("record", "-o", "mission", *words), env, folder) as process:
-        for line in process.stderr:
-            if "press Ctrl-C to stop" in line:
-                break
-        entries = Path(env["XDG_RUNTIME_DIR"]) / "pytpc"
-        until = time.monotonic() + PATIENCE_S
-        while not (entries.is_dir() and any(entries.iterdir())):
-            assert time.monotonic() < until
-            assert process.poll() is None, process.stderr.read()
-            time.sleep(0.05)
-        yield process
-
-
-def ended(process: subprocess.Popen) -> str:
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=PATIENCE_S)
-    assert process.returncode == 0, err
-    return out
-
-
-def told(env: dict[str, str], folder: Path, *words: str, status: int = 0) -> str:
-    ran = subprocess.run(
-        pytpc(*words),
-        env=env,
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        timeout=PATIENCE_S,
-        check=False,
-    )
-    assert ran.returncode == status, (ran.stdout, ran.stderr)
-    return ran.stdout + ran.stderr
 
 
 def analysed(env: dict[str, str], folder: Path) -> str:
@@ -123,7 +53,7 @@ def analysed(env: dict[str, str], folder: Path) -> str:
 def test_no_report_is_lost_at_5000_a_second(env: dict[str, str], tmp_path: Path) -> None:
     with recorder(env, tmp_path) as process, guard(env, tmp_path, 5000, 4.0) as node:
         sent = int(node.stdout.readline())
-        out = ended(process)
+        out = interrupted(process)
     # 100 reports each 20 ms, for 4 s.
     assert sent == 20_000
     assert "20,000 reports and 0 marks" in out
@@ -156,7 +86,7 @@ def test_the_value_at_a_time_is_that_of_before_or_after_it_was_set(
         ]
         refused = told(env, tmp_path, "sink", "/robot1/guard", "--sink", "file", status=1)
         assert "/robot1/guard: no folder" in refused
-        ended(process)
+        interrupted(process)
     recording = read(tmp_path / "mission")
     values = ParameterValues(recording.values)
     changes = [one for one in values.changes() if one.name == SPEED]
@@ -188,7 +118,7 @@ def test_marks_of_two_observers_are_ranked_by(env: dict[str, str], tmp_path: Pat
                 terminal.wait_for("type", PATIENCE_S)
                 terminal.press("q")
                 assert terminal.wait(PATIENCE_S) == 0
-        ended(process)
+        interrupted(process)
     found = read(tmp_path / "mission/mission.mcap")
     assert [(one.observer, one.type) for one in found.marks] == [("ana", "I"), ("ben", "II")]
     assert all(found.start_ns <= one.time_ns <= found.end_ns for one in found.marks)

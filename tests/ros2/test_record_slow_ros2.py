@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 import yaml
 from rosbags.rosbag2.storage_mcap import McapReader
-from test_record_ros2 import ended, env, recorder, running
 
+from patience import PATIENCE_S
 from pytpc.ingest.ros2 import decode_string
-from ros2_graph import PATIENCE_S, PYTHON
+from ros2_commands import interrupted, recorder, running
+from ros2_graph import PYTHON
 
-__all__ = ["env"]
 NODE = Path(__file__).with_name("late_node.py")
 # For longer than a node of usual speed takes to answer.
 LONG_S = 8.0
@@ -21,8 +21,7 @@ LONG_S = 8.0
 
 @pytest.fixture
 def late(env: dict[str, str], tmp_path: Path):
-    node_env = {name: value for name, value in env.items() if name != "PYTHONPATH"}
-    with running([str(PYTHON), str(NODE)], node_env, tmp_path) as node:
+    with running([str(PYTHON), str(NODE)], env, tmp_path) as node:
         assert node.stdout.readline() == "ready\n", node.stderr.read()
         yield node
 
@@ -56,7 +55,7 @@ def test_late_answers_and_all_qualities_of_service_are_recorded(
         wait_for_bytes(grows, b"reliable")
         step(late)
         wait_for_bytes(grows, b"best effort")
-        ended(process)
+        interrupted(process)
     assert said(tmp_path / "mission/mission.mcap") == {
         "/map": {b"once"},
         "/scan": {b"reliable", b"best effort"},

@@ -8,18 +8,17 @@ import os
 import re
 import signal
 import subprocess
-import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from pytpc.base.paths import project_root
+from patience import PATIENCE_S
 from pytpc.build.build import build_workspace
 from pytpc.ingest.reading import read
 from pytpc.recording.marks import Mark, write_marks
 from pytpc.values.origins import read_origins
-from ros2_graph import PATIENCE_S, PYTHON, ros2_env
+from ros2_commands import Running, interrupted, pytpc, running, told
+from ros2_graph import PYTHON
 from ros2_workspace import make_ros2_workspace
 from terminals import Terminal
 
@@ -97,14 +96,6 @@ def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def env(domain: dict[str, str], tmp_path: Path) -> dict[str, str]:
-    runtime = tmp_path / "run"
-    runtime.mkdir(mode=0o700)
-    more = {"XDG_RUNTIME_DIR": str(runtime), "HOME": str(tmp_path)}
-    return ros2_env(domain, **more)
-
-
-@pytest.fixture
 def launch_env(env: dict[str, str]) -> dict[str, str]:
     """The environment with launch, where there is one."""
     folder = os.environ.get("TPC_TEST_LAUNCH")
@@ -117,57 +108,17 @@ def launch_env(env: dict[str, str]) -> dict[str, str]:
     return found
 
 
-def pytpc(*words: object) -> list[str]:
-    code = (
-        "import sys; sys.path.insert(0, sys.argv.pop(1)); from pytpc.cli.main import main; main()"
-    )
-    return [sys.executable, "-c", code, str(project_root()), *map(str, words)]
+def started(env: dict[str, str], folder: Path, *words: object) -> Running:
+    return running(pytpc(*words), env, folder)
 
 
-def told(env: dict[str, str], folder: Path, *words: object, status: int = 0) -> str:
-    ran = subprocess.run(
-        pytpc(*words),
-        env=env,
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        timeout=PATIENCE_S,
-        check=False,
-    )
-    assert ran.returncode == status, (ran.stdout, ran.stderr)
-    return ran.stdout + ran.stderr
-
-
-@contextlib.contextmanager
-def started(env: dict[str, str], folder: Path, *words: object) -> Iterator[subprocess.Popen]:
-    with subprocess.Popen(
-        pytpc(*words),
-        env=env,
-        cwd=folder,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    ) as process:
-        try:
-            yield process
-        finally:
-            process.kill()
-
-
-def wait_for(process: subprocess.Popen, words: str) -> list[str]:
+def read_until(process: subprocess.Popen, words: str) -> list[str]:
     said = []
     for line in process.stderr:
         said.append(line)
         if re.search(words, line):
             return said
     raise AssertionError(said)
-
-
-def interrupted(process: subprocess.Popen) -> str:
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=PATIENCE_S)
-    assert process.returncode == 0, err
-    return out + err
 
 
 def left_in(folder: Path) -> list[str]:
@@ -188,9 +139,9 @@ def test_an_executable_with_a_params_file_is_recorded_and_its_value_changed(
     with started(
         env, tmp_path, "record", workspace, "guard", "speed_guard", "-o", "mission", *words
     ) as process:
-        said = wait_for(process, "what the nodes print")
+        said = read_until(process, "what the nodes print")
         assert f"recording ROS 2 domain {env['ROS_DOMAIN_ID']}" in "".join(said)
-        wait_for(process, SOME_REPORTS)
+        read_until(process, SOME_REPORTS)
         out = interrupted(process)
     assert "(interrupted)" in out
     mission = tmp_path / "mission"
@@ -216,10 +167,10 @@ def test_nodes_started_by_hand_tell_their_params_file_and_rules(
     script = workspace / ".tpc/install/guard/lib/guard/speed_guard"
     words = ["--ros-args", "--params-file", "limits.yaml", "-p", "dies_at:=1000000"]
     with started(env, tmp_path, "record", "--static", workspace, "-o", "mission") as process:
-        wait_for(process, "press Ctrl-C to stop")
+        read_until(process, "press Ctrl-C to stop")
         # The name of the node is in its code alone.
         with started(env, tmp_path, "run", script, *words) as node:
-            wait_for(process, SOME_REPORTS)
+            read_until(process, SOME_REPORTS)
             interrupted(process)
             node.send_signal(signal.SIGINT)
             node.wait(PATIENCE_S)
@@ -333,7 +284,7 @@ def test_ctrl_c_at_any_moment_leaves_a_whole_recording(
     workspace: Path, env: dict[str, str], tmp_path: Path, later: str
 ) -> None:
     with started(env, tmp_path, "record", workspace, "guard", "speed_guard") as process:
-        wait_for(process, "press Ctrl-C to stop") if later == "recording" else None
+        read_until(process, "press Ctrl-C to stop") if later == "recording" else None
         if later == "looking":
             # The folder is there as soon as the mission begins, before its graph.
             while not any((tmp_path / "out").glob("*/.recording.lock")):
@@ -391,7 +342,7 @@ def test_a_launch_file_ends_at_ctrl_c_with_its_nodes(
 ) -> None:
     launch = workspace / "src/guard/launch/guard.launch.py"
     with started(launch_env, tmp_path, "record", workspace, launch, "-o", "mission") as process:
-        wait_for(process, SOME_REPORTS)
+        read_until(process, SOME_REPORTS)
         out = interrupted(process)
     assert "(interrupted)" in out
     assert "died" not in out
@@ -414,11 +365,11 @@ def test_the_launch_file_of_a_running_robot_is_read(
     script = workspace / ".tpc/install/guard/lib/guard/speed_guard"
     words = ["--launch", source, "--static", workspace, "-o", "mission"]
     with started(launch_env, tmp_path, "record", *words) as process:
-        wait_for(process, "press Ctrl-C to stop")
+        read_until(process, "press Ctrl-C to stop")
         # As launch would start it.
         rules = ["-r", "__node:=guard", "-r", "__ns:=/robot1", "-p", "speed_limit:=5.5"]
         with started(launch_env, tmp_path, "run", script, "--ros-args", *rules) as node:
-            wait_for(process, SOME_REPORTS)
+            read_until(process, SOME_REPORTS)
             interrupted(process)
             node.send_signal(signal.SIGINT)
             node.wait(PATIENCE_S)

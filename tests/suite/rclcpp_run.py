@@ -9,9 +9,8 @@ import subprocess
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from pytpc.base.paths import ROS_PREFIXES
-from pytpc.workspace.ros2 import AMENT, has_cmake_package
-from ros2_graph import PATIENCE_S, PYTHON, ros2_env
+from patience import PATIENCE_S
+from ros2_graph import PYTHON, ros2_env
 from suite.expectations import RCLCPP_PACKAGE
 from suite.reported import raw
 
@@ -25,17 +24,6 @@ _KINDS = {
 _SUBSCRIBES = re.compile(r"create_subscription<Float64>\(\s*(?:\"input\"|topic)")
 
 Heard = dict[str, list[str]]
-
-
-def without_rclcpp(environment: Mapping[str, str]) -> str | None:
-    """Why the nodes cannot be built here; None if they can."""
-    prefixes = [Path(part) for part in environment.get(AMENT, "").split(":") if part]
-    lacking = [
-        name
-        for name in ("rclcpp", "rclcpp_action", "rclcpp_components", "rclcpp_lifecycle")
-        if not has_cmake_package(name, [*prefixes, *ROS_PREFIXES])
-    ]
-    return f"not installed: {', '.join(lacking)} ({AMENT}, /opt/ros)" if lacking else None
 
 
 def run_nodes(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -186,7 +186,16 @@ def link_package(example: Example, workspace: Path) -> None:
     Raises:
         WorkspaceError: one cannot be made.
     """
-    for package in (example.folder, SHARED_PACKAGE):
+    link_packages((example.folder, SHARED_PACKAGE), workspace)
+
+
+def link_packages(packages: Iterable[Path], workspace: Path) -> None:
+    """Put links to these folders into a workspace, in place of those that lead elsewhere.
+
+    Raises:
+        WorkspaceError: one cannot be made.
+    """
+    for package in packages:
         link = workspace / "src" / package.name
         if link.resolve() == package:
             continue

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 from pytpc.base.paths import MERGED_FILE, project_root
 from pytpc.build.build import build_workspace, workspace_env
 from pytpc.static.static_info import StaticInfo
-from pytpc.workspace.colcon import BuildOptions
 from pytpc.workspace.ros2 import find_ros2
+from pytpc_evaluation.demo.demo_examples import link_packages
 from pytpc_evaluation.demo.ros2_robot import Program, Ros2Robot
 
 PACKAGE = project_root() / "examples" / "image_capture_controller"
@@ -25,25 +24,19 @@ def has_rclcpp() -> bool:
     return ros2 is not None and all(ros2.has(package) for package in needed)
 
 
-def with_controller(
-    robot: Ros2Robot, out: Path, on_output: Callable[[str], None] | None = None
-) -> Ros2Robot:
+def with_controller(robot: Ros2Robot, out: Path) -> Ros2Robot:
     """The robot with the controller in C++ in place of that in Python.
 
     Args:
         robot: whose nodes are all in Python.
         out: the package is built in a workspace below it.
-        on_output: gets each line of the build.
 
     Raises:
         TpcError: the package cannot be built.
     """
     workspace = out / "controller_ws"
-    package = workspace / "src" / PACKAGE.name
-    package.parent.mkdir(parents=True, exist_ok=True)
-    if not package.is_symlink():
-        package.symlink_to(PACKAGE)
-    built = build_workspace(workspace, BuildOptions(), on_output=on_output)
+    link_packages([PACKAGE], workspace)
+    built = build_workspace(workspace)
     program = built.bases.install / PACKAGE.name / "lib" / PACKAGE.name / NODE
     env = workspace_env(built.bases.install, dict(os.environ))
     others = [unit for unit in robot.static.units if unit.link_unit != NODE]

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from rich.console import Console
 
+from pytpc.cli.lines import progress_console
 from pytpc.ingest.reading import read
 from pytpc.recording.mission import EVENTS_FILE, REPORTS_FOLDER, Recording
 from pytpc.ros.mission_run import MissionRun, Progress, RecordOptions, save_run
@@ -31,13 +32,15 @@ def analysed_package(example: Example, console: Console, out: Path) -> Iterator[
 
     Where rclcpp is found, the controller is the one in C++.
     """
+    in_cpp = has_rclcpp()
     with step(console, "Analyse the mission's nodes"):
         robot = prepared(example, out / "install")
-        if not has_rclcpp():
+        if not in_cpp:
             tell_found(console, robot.static)
-    if has_rclcpp():
+    if in_cpp:
         with step(console, "Build the flight controller in C++ with TPC"):
-            robot = with_controller(robot, out)
+            with progress_console().status("colcon build"):
+                robot = with_controller(robot, out)
             tell_found(console, robot.static)
     with own_domain() as domain:
         yield Ready(robot.static, partial(run_ros2_treatment, robot, domain=domain))

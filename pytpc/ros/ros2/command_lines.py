@@ -15,7 +15,7 @@ from pathlib import Path
 from pytpc.base.errors import InputError
 from pytpc.ros.ros2.address import DOMAIN
 from pytpc.ros.ros2.flight import StartedProcess
-from pytpc.values.origins import Origin
+from pytpc.values.origins import Origin, split_name
 from pytpc.values.ros2_arguments import NodeArguments
 from pytpc.values.scalars import same_value
 from pytpc.values.trace import Trace
@@ -78,7 +78,7 @@ class CommandLines:
         Returns:
             None where nothing is known.
         """
-        nodes = {name.rpartition("/")[0] for name in values}
+        nodes = {split_name(name)[0] for name in values}
         placed = dict({} if launched is None else launched.placed or {})
         files = dict({} if launched is None else launched.files)
         declaring = {node.name for node in launched.nodes} if launched is not None else set()
@@ -137,4 +137,4 @@ def _place(origin: Origin | None) -> object:
 
 
 def _is_of(name: str, node: str) -> bool:
-    return name.rpartition("/")[0] == node
+    return split_name(name)[0] == node

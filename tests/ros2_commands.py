@@ -1,0 +1,84 @@
+"""Commands of pytpc on a ROS 2 graph, in a process of their own."""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import AbstractContextManager
+from pathlib import Path
+
+from patience import PATIENCE_S
+from pytpc.base.paths import project_root
+
+Running = AbstractContextManager[subprocess.Popen[str]]
+
+
+def pytpc(*words: object) -> list[str]:
+    """The command line of pytpc; nodes that it starts find nothing of this project."""
+    code = (
+        "import sys; sys.path.insert(0, sys.argv.pop(1)); from pytpc.cli.main import main; main()"
+    )
+    return [sys.executable, "-c", code, str(project_root()), *map(str, words)]
+
+
+def told(env: dict[str, str], folder: Path, *words: object, status: int = 0) -> str:
+    """What a command says, which ends with this status."""
+    ran = subprocess.run(
+        pytpc(*words),
+        env=env,
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE_S,
+        check=False,
+    )
+    assert ran.returncode == status, (ran.stdout, ran.stderr)
+    return ran.stdout + ran.stderr
+
+
+@contextlib.contextmanager
+def running(
+    command: list[str], env: dict[str, str], folder: Path
+) -> Iterator[subprocess.Popen[str]]:
+    """A program that is killed in the end, unless it has ended."""
+    with subprocess.Popen(
+        command,
+        env=env,
+        cwd=folder,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        try:
+            yield process
+        finally:
+            process.kill()
+
+
+def interrupted(process: subprocess.Popen[str]) -> str:
+    """What a command says that Ctrl-C ends well."""
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=PATIENCE_S)
+    assert process.returncode == 0, err
+    return out + err
+
+
+@contextlib.contextmanager
+def recorder(env: dict[str, str], folder: Path, *words: str) -> Iterator[subprocess.Popen[str]]:
+    """`pytpc record` into ``mission``, once other commands find it."""
+    with running(pytpc("record", "-o", "mission", *words), env, folder) as process:
+        for line in process.stderr:
+            if "press Ctrl-C to stop" in line:
+                break
+        entries = Path(env["XDG_RUNTIME_DIR"]) / "pytpc"
+        until = time.monotonic() + PATIENCE_S
+        while not (entries.is_dir() and any(entries.iterdir())):
+            assert time.monotonic() < until
+            assert process.poll() is None, process.stderr.read()
+            time.sleep(0.05)
+        yield process
