@@ -112,6 +112,7 @@ void lookForRos() {
     return load("libtpc_log_ros1.so");
   if (!F.HasRos2)
     return;
+  RclState::takeOver();
   loadMessages(F.RclFolder);
   load("libtpc_log_ros2.so");
 }

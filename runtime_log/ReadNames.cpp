@@ -3,6 +3,7 @@
 
 #include "LogOne.h"
 #include "Modes.h"
+#include "RclState.h"
 #include "Ros.h"
 #include "Runtime.h"
 #include "Threads.h"
@@ -199,8 +200,10 @@ void log_node(const char *node, const void *object,
   try {
     Thread *T = ThisThread ? ThisThread : makeThread();
     ReportMark Mark(*T);
-    if (Mark && node && *node && object)
-      ReadNames::all().addNode(node, object, size);
+    if (!Mark || !node || !*node || !object)
+      return;
+    RclState::of().noteName(node);
+    ReadNames::all().addNode(node, object, size);
   } catch (...) {
     // A name that cannot be reported is not worth a node.
   }
@@ -218,6 +221,7 @@ void log_read_in(char *key, const char *node, const void *name, bool text,
     ReportMark Mark(*T);
     if (!Mark || !node || !*node)
       return;
+    RclState::of().noteName(node);
     const std::string Node = node;
     ReadNames::all().add(key, Node + "/" + textOf(name, text), object, size,
                          Node);

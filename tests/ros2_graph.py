@@ -57,8 +57,8 @@ def wheels_env() -> dict[str, str]:
     }
 
 
-def compile_on_rcl(source: Path, output: Path) -> Path:
-    """Build one C++ file with the log library and rcl."""
+def compile_on_rcl(source: Path, output: Path, *flags: str, with_log: bool = True) -> Path:
+    """Build one C++ file with rcl, and with the log library before it."""
     ros = PYTHON.parents[1]
     packages = [one for one in (ros / "include").iterdir() if (one / one.name).is_dir()]
     subprocess.run(
@@ -66,8 +66,8 @@ def compile_on_rcl(source: Path, output: Path) -> Path:
             "clang++-19",
             *["-std=c++17", "-O2", "-Wall", "-Werror", "-pthread", f"-I{prefix()}/include/tpc"],
             *[word for one in packages for word in ("-isystem", str(one))],
-            *[str(source), "-o", str(output)],
-            *[f"-L{prefix()}/lib", "-ltpc_log", f"-Wl,-rpath,{prefix()}/lib"],
+            *[*flags, str(source), "-o", str(output)],
+            *([f"-L{prefix()}/lib", "-ltpc_log", f"-Wl,-rpath,{prefix()}/lib"] * with_log),
             *[f"-L{ros}/lib", "-lrcl", "-lrcutils", "-Wl,--allow-shlib-undefined"],
         ],
         check=True,

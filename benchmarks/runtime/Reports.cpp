@@ -1,7 +1,7 @@
 //===- Reports.cpp - A node that only reports -----------------------------===//
 //
-// Prints the nanoseconds of one report: the median of blocks of reports, made by
-// a node of roscpp (with ROS1), or by one on rcl alone.
+// Prints the nanoseconds of one report: the median of blocks of reports, made
+// by a node of roscpp (with ROS1), or by one on rcl alone.
 //
 //===----------------------------------------------------------------------===//
 #include "LogOne.h"

@@ -65,8 +65,8 @@ void PointsToSolver::addReturned(const CallBase &Call, Node &N) {
   }
 }
 
-/// Adds the sources of \p Extract: the pointers that may have been put into that
-/// part of a struct that is kept in registers.
+/// Adds the sources of \p Extract: the pointers that may have been put into
+/// that part of a struct that is kept in registers.
 void PointsToSolver::addExtracted(const ExtractValueInst &Extract, Node &N) {
   // A pair of an iterator and whether something was inserted.
   const auto *Pair = dyn_cast<CallBase>(Extract.getAggregateOperand());
@@ -80,8 +80,8 @@ void PointsToSolver::addExtracted(const ExtractValueInst &Extract, Node &N) {
     const Value *Whole = Work.pop_back_val();
     if (!Seen.insert(Whole).second)
       continue;
-    if (const Value *Part = FindInsertedValue(const_cast<Value *>(Whole),
-                                              Extract.getIndices()))
+    if (const Value *Part =
+            FindInsertedValue(const_cast<Value *>(Whole), Extract.getIndices()))
       N.Sources.push_back(Part);
     else if (const auto *Phi = dyn_cast<PHINode>(Whole))
       append_range(Work, Phi->incoming_values());

@@ -317,8 +317,8 @@ static bool isUsed(const Value *Arg, const CallBase &Call, const Rule *Row) {
          Arg != objectOf(Call, *Row);
 }
 
-/// True if \p Call returns an element of a container itself, and no reference to
-/// it: those of a std::vector<bool> are bits.
+/// True if \p Call returns an element of a container itself, and no reference
+/// to it: those of a std::vector<bool> are bits.
 static bool returnsElement(const CallBase &Call, const RuleMatches &Rules) {
   static constexpr StringRef Names[] = {"operator[]", "at", "front", "back"};
   return Rules.container(Call) && Call.getType()->isIntegerTy() &&

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import count
@@ -21,7 +22,7 @@ import numpy as np
 
 from pytpc.diagnosis.thresholds.units import threshold_of
 from pytpc.recording.mission import Recording
-from pytpc.static.link_unit import Comparison, LinkUnit
+from pytpc.static.link_unit import Comparison, LinkUnit, ParameterRead
 from pytpc.static.parameters import (
     DYNAMIC,
     INSTANCE,
@@ -34,27 +35,34 @@ from pytpc.static.parameters import (
 from pytpc.static.static_info import StaticInfo
 
 _CLOSE = 1e-9
+NodesOf = Mapping[str, AbstractSet[str]]
 _OF_ROS2 = ("rclpy", "rclcpp")
 """How the names of ROS 2's calls begin: each parameter is one of the node that reads it."""
 
 
 def with_full_names(
-    static_info: StaticInfo, recording: Recording, values: Mapping[str, object]
+    static_info: StaticInfo,
+    recording: Recording,
+    values: Mapping[str, object],
+    nodes_of: NodesOf | None = None,
 ) -> StaticInfo:
     """The static information with the full names of this mission as sources.
 
-    A name that the node's own name completes stays (``~limit``), and what a node of ROS 2 reads
-    as ``limit`` becomes such a name. A name that several objects read under different full names
-    stays if it is not known which of them evaluated the comparison. A comparison with a parameter
-    that is not set is left out if the same comparison is also known under one that is: an older
-    name of it.
+    A name that the node's own name completes stays in ROS 1 (``~limit``). What a node of ROS 2
+    reads as ``limit`` gets its full name, ``/ns/node/limit``; it becomes ``~limit`` if several
+    nodes share the comparison, or if none has reported it. A name that several objects read under
+    different full names stays if it is not known which of them evaluated the comparison. A
+    comparison with a parameter that is not set is left out if the same comparison is also known
+    under one that is: an older name of it.
 
     Args:
         static_info: of the build.
         recording: the mission.
         values: the parameter server, by full names; empty if it is not known.
+        nodes_of: the nodes that evaluated each comparison, by key; those of the recording if it
+            is not given.
     """
-    names = _Names(recording, values)
+    names = _Names(recording, values, recording.nodes_of if nodes_of is None else nodes_of)
     units = tuple(_renamed(unit, names) for unit in static_info.units)
     if all(new is old for new, old in zip(units, static_info.units, strict=True)):
         return static_info
@@ -66,6 +74,7 @@ def with_full_names(
 class _Names:
     recording: Recording
     values: Mapping[str, object]
+    nodes_of: NodesOf
 
     @cached_property
     def reported(self) -> Mapping[str, frozenset[tuple[str, str]]]:
@@ -125,7 +134,7 @@ class _Names:
 
     def _of_nodes(self, key: str, said: frozenset[tuple[str, str]]) -> frozenset[tuple[str, str]]:
         """Those of the names that are parameters of the nodes which evaluated ``key``."""
-        nodes = self.recording.nodes_of.get(key, frozenset())
+        nodes = self.nodes_of.get(key, frozenset())
         own = {one for one in said if any(one[1].startswith(f"{node}/") for node in nodes)}
         return frozenset(own) or said
 
@@ -142,17 +151,10 @@ class _Names:
         source = comparison.source
         if source is None or (source.startswith("/") and DYNAMIC not in source):
             return None
-        places = {(place.file, place.lineno) for place in comparison.param_reads}
-        reads = [
-            read
-            for read in unit.parameters
-            if read.name == source and (read.file, read.lineno) in places
-        ]
+        reads = _reads_of(comparison, unit)
         said = self.said_of(comparison.key, {read.key for read in reads})
-        if DYNAMIC not in source and any(read.api.startswith(_OF_ROS2) for read in reads):
-            own = f"~{source.lstrip('~')}"
-            if all(name == resolved(own, node) for node, name in said):
-                return own
+        if DYNAMIC not in source and _are_of_ros2(reads):
+            return self._of_ros2(comparison.key, f"~{source.lstrip('~')}", said)
         if said:
             if DYNAMIC not in source and all(name == resolved(source, node) for node, name in said):
                 return None
@@ -160,11 +162,20 @@ class _Names:
             return names.pop() if len(names) == 1 else None
         return self._by_value(comparison) if DYNAMIC in source and source != DYNAMIC else None
 
+    def _of_ros2(self, key: str, own: str, said: frozenset[tuple[str, str]]) -> str | None:
+        """The full name of a node's ``own`` parameter (``~limit``), if it is one node's."""
+        nodes = self.nodes_of.get(key, frozenset())
+        # A forked child is `/node (PID)`.
+        names = {name for _, name in said} or {resolved(own, n.partition(" ")[0]) for n in nodes}
+        if len(names) == 1:
+            return names.pop()
+        return own if all(name == resolved(own, node) for node, name in said) else None
+
     def _by_value(self, comparison: Comparison) -> str | None:
         """The parameter of the server that has this comparison's name and value."""
         source = comparison.source
         assert source is not None
-        nodes = self.recording.nodes_of.get(comparison.key, frozenset())
+        nodes = self.nodes_of.get(comparison.key, frozenset())
         fitting = [name for name in self.values if same_parameter(name, source)]
         fitting = [n for n in fitting if any(n.startswith(f"{node}/") for node in nodes)] or fitting
         if len(fitting) > 1:
@@ -180,10 +191,28 @@ class _Names:
         source = comparison.source
         if source is None:
             return True
-        nodes = self.recording.nodes_of.get(comparison.key, frozenset())
+        nodes = self.nodes_of.get(comparison.key, frozenset())
         if DYNAMIC not in source:
             return any(resolved(source, node) in self.values for node in nodes)
         return any(same_parameter(name, source) for name in self.values)
+
+
+def is_of_ros2(comparison: Comparison, unit: LinkUnit) -> bool:
+    """Whether a node of ROS 2 reads the comparison's parameter."""
+    return _are_of_ros2(_reads_of(comparison, unit))
+
+
+def _reads_of(comparison: Comparison, unit: LinkUnit) -> list[ParameterRead]:
+    places = {(place.file, place.lineno) for place in comparison.param_reads}
+    return [
+        read
+        for read in unit.parameters
+        if read.name == comparison.source and (read.file, read.lineno) in places
+    ]
+
+
+def _are_of_ros2(reads: Iterable[ParameterRead]) -> bool:
+    return any(read.api.startswith(_OF_ROS2) for read in reads)
 
 
 def _gives(comparison: Comparison, value: object, thresholds: Iterable[float]) -> bool:

@@ -67,18 +67,14 @@ class ListedFiles:
         for path, found in sorted(merged.items()):
             entry = ListedFile(path, tuple(found.values()))
             self.by_name.setdefault(os.path.basename(path), []).append(entry)
-        self._by_real = {
-            os.path.realpath(file.path): file
-            for files_of_name in self.by_name.values()
-            for file in files_of_name
-        }
+        self._count = len(merged)
 
     def __len__(self) -> int:
-        return len(self._by_real)
+        return self._count
 
     def is_exact(self, path: str) -> bool:
         """Whether ``path`` is one of these files itself, and not a copy."""
-        return os.path.realpath(path) in self._by_real
+        return self._exact(path) is not None
 
     def candidates(self, path: str) -> list[ListedFile]:
         """The files that the one at ``path`` may be a copy of; only itself where it is one of them.
@@ -86,11 +82,22 @@ class ListedFiles:
         `pytpc.python_runtime.find.matching` compares the text of a file that was installed or is on
         another machine.
         """
+        exact = self._exact(path)
+        return [exact] if exact is not None else next(filter(None, self._named(path)), [])
+
+    def _named(self, path: str) -> list[list[ListedFile]]:
+        """The files of this name, and those of the name that a symbolic link leads to."""
+        names = dict.fromkeys((os.path.basename(path), os.path.basename(os.path.realpath(path))))
+        return [self.by_name.get(name, []) for name in names]
+
+    def _exact(self, path: str) -> ListedFile | None:
+        # Of the files of these names alone: to resolve thousands would delay a node.
         real = os.path.realpath(path)
-        names = (os.path.basename(path), os.path.basename(real))
-        named = self.by_name.get(names[0]) or self.by_name.get(names[1], [])
-        exact = self._by_real.get(real)
-        return [exact] if named and exact is not None else named
+        for files in self._named(path):
+            for file in files:
+                if os.path.realpath(file.path) == real:
+                    return file
+        return None
 
 
 class _Unit(NamedTuple):

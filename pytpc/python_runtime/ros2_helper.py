@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import _thread
+import contextlib
 import os
 import time
 from typing import TYPE_CHECKING
@@ -14,6 +15,7 @@ from pytpc.python_runtime.ros2_settings import Settings
 
 if TYPE_CHECKING:
     from pytpc.python_runtime.runtime import Runtime
+    from pytpc.python_runtime.sinks import Sink
 
 # How long it waits in one piece for somebody who asks for the settings.
 _LONG_S = 3600.0
@@ -22,6 +24,8 @@ _ANSWER_S = 0.1
 # After a signal has shut the context down: usually the process ends now.
 _AGAIN_S = 0.5
 _END_S = 10.0
+# How often signals may shut down the context that sends the rest.
+_SIGNALS = 3
 
 
 class Helper:
@@ -32,6 +36,7 @@ class Helper:
         self._settings = Settings(runtime)
         self._process = os.getpid()
         self._is_stopping = False
+        self._has_ended = False
         # Locked until the thread shall end, and until it has ended.
         self._stop = _thread.allocate_lock()
         self._stop.acquire()
@@ -119,12 +124,8 @@ class Helper:
         self.link = link
         return True
 
-    def end(self, *, send: bool) -> None:
-        """The process ends: end the thread, so that it is not within rclpy when Python ends.
-
-        What a sink still keeps is sent by its own `end`, if ``send``; in a new context, where a
-        signal has shut the other one down or the program ends as soon as it has begun.
-        """
+    def end(self) -> None:
+        """The process ends: end the thread, so that it is not within rclpy when Python ends."""
         self._is_stopping = True
         if self._stop.locked():
             self._stop.release()
@@ -134,13 +135,36 @@ class Helper:
             self.link = None
             return
         self._ended.release()
-        if self.link is not None and not self.link.is_open():
-            self._lose(self.link)
-        if send and self.link is None:
-            try:
-                self.link = Link(ros2_state.name(), ros2_state.domain(), None)
-            except Exception as error:
-                self._runtime.fall_back(f"{error}" or type(error).__name__)
+        self._has_ended = True
+
+    def send_rest(self, sink: Sink) -> None:
+        """After `end`: let the sink send what it keeps.
+
+        In a new context, where a signal has shut the other one down or the program ends as soon as
+        it has begun. rclpy handles a signal in a thread of its own, so the context may be shut down
+        while the sink sends.
+        """
+        for _ in range(_SIGNALS):
+            if self.link is not None and not self.link.is_open():
+                self._lose(self.link)
+            if self.link is None and not (sink.wants_to_send() and self._opened_again()):
+                return
+            with contextlib.suppress(Exception):
+                sink.finish()
+            if self.link is not None and self.link.is_open():
+                return
+
+    def _opened_again(self) -> bool:
+        if not self._has_ended:
+            return False
+        try:
+            self.link = Link(ros2_state.name(), ros2_state.domain(), None)
+        except ContextShutDown:
+            return True
+        except Exception as error:
+            self._runtime.fall_back(f"{error}" or type(error).__name__)
+            return False
+        return True
 
     def close(self) -> None:
         """Leave the graph, after the last batch."""

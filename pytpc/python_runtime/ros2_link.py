@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     Ask = Callable[[str], Any]
 
 NAME = "_tpc"
+# To join the graph usually takes less than this. Where it takes longer, what is waited for on the
+# graph takes as many times longer, at most twice.
+_JOINED_NS = 20_000_000
+_SLOWEST = 2.0
 
 
 class ContextShutDown(Exception):
@@ -37,7 +41,7 @@ class Link:
 
         self.node_name = node
         self.began_ns = monotonic_ns()
-        # How long it took to join the graph: so slow is the machine at present.
+        # How long it took to join the graph.
         self.took_ns = 0
         self._publishers: dict[str, Any] = {}
         self._executor: Any = None
@@ -63,6 +67,10 @@ class Link:
     def is_open(self) -> bool:
         """Whether it can be used. rclpy's signal handlers shut down all contexts of a process."""
         return bool(self._context.ok())
+
+    def slowness(self) -> float:
+        """How many times longer than usual the graph takes."""
+        return min(max(1.0, self.took_ns / _JOINED_NS), _SLOWEST)
 
     def publisher(self, kind: Any, topic: str, qos: Any) -> Any:  # noqa: ANN401
         """The publisher of a topic, made once."""

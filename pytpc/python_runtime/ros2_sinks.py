@@ -32,10 +32,7 @@ _DISCOVERY_NS = 200_000_000
 _GATHER_NS = 1_000_000_000
 # Discovery, and the connection to those discovered, may take more than three seconds.
 _KNOWN_NS = 4_000_000_000
-# To join the graph usually takes less than this. Where it takes longer, all of the above gets as
-# many times longer, at most twice.
-_JOINED_NS = 20_000_000
-_SLOWEST = 2.0
+# Both get longer on a slow machine.
 _ACKNOWLEDGED_S = 1.0
 # So long the last messages have to arrive: what the process has not sent again by then is lost, and
 # Fast DDS asks every three seconds what is missing. ROS gives a process five seconds to end.
@@ -76,8 +73,8 @@ class TopicSink(WaitingSink):
         self._kind: Any = None
         # Messages that are not sent yet, each with the number of reports in it.
         self._outbox: deque[tuple[Any, int]] = deque()
-        # Whether somebody listens, as far as it is known.
-        self.may_be_heard = True
+        # Whether somebody listened when it last looked.
+        self._is_known = False
         self.has_sent = False
 
     def poll(self) -> None:
@@ -91,8 +88,10 @@ class TopicSink(WaitingSink):
         return bool(self._waiting or self._outbox)
 
     def wants_to_send(self) -> bool:
-        """Whether somebody may wait for it."""
-        return self.has_waiting() and self.may_be_heard
+        """Whether somebody may wait for it: also one who is not discovered yet."""
+        on = self._on
+        is_searching = on is None or monotonic_ns() - on.began_ns < self._search_ns * on.slowness()
+        return self.has_waiting() and (self._is_known or is_searching)
 
     def _is_ready(self, *, at_once: bool) -> bool:
         """Whether something waits, and all subscribers that are known have connected."""
@@ -108,7 +107,7 @@ class TopicSink(WaitingSink):
             return False
         connected = self._publisher.get_subscription_count()
         known = link.known_subscribers(self.topic)
-        self.may_be_heard = max(connected, known) > 0
+        self._is_known = max(connected, known) > 0
         return bool(connected) and (age >= _GATHER_NS or connected >= known)
 
     def _offered(self) -> tuple[Any, Any]:
@@ -162,12 +161,16 @@ class TopicSink(WaitingSink):
         if wait is not None:
             wait(Duration(seconds=patience_s))
 
-    def _finish(self) -> None:
-        """Send what waits to those who are known to listen."""
+    def finish(self) -> None:
+        """Send what waits to those who are known to listen.
+
+        Raises:
+            Exception: rclpy's own, where a signal shuts the context down meanwhile.
+        """
         link = self._link()
         if link is None or not link.is_open():
             return
-        slowness = min(max(1.0, link.took_ns / _JOINED_NS), _SLOWEST)
+        slowness = link.slowness()
         while self.is_last and self.has_waiting() and not self._is_ready(at_once=True):
             age = (monotonic_ns() - link.began_ns) / slowness
             is_known = link.known_subscribers(self.topic) > 0
@@ -194,9 +197,10 @@ class TopicSink(WaitingSink):
 
     def end(self) -> None:
         """Send what waits, and warn about reports that were not sent."""
-        # A signal may have shut the context down.
-        with contextlib.suppress(Exception):
-            self._finish()
+        if not self.is_last:
+            # A signal may have shut the context down.
+            with contextlib.suppress(Exception):
+                self.finish()
         count = sum(1 for waiting in self.drain() if waiting.report is not None)
         count += sum(reports for _, reports in self._outbox)
         self._outbox.clear()

@@ -331,8 +331,9 @@ class Runtime:
             self._flush()
             helper, sink = self._ros2, self._sink
         if helper is not None:
-            helper.end(send=sink.wants_to_send())
+            helper.end()
             sink.is_last = True
+            helper.send_rest(sink)
         with self._lock:
             self._sink.end()
         if helper is not None:

@@ -140,6 +140,9 @@ class Sink:
         """Information for people: words with ``=`` in them."""
         return ""
 
+    def finish(self) -> None:
+        """The process ends: send what waits, where that is sent over ROS 2."""
+
     def end(self) -> None:
         """The process ends."""
 

@@ -34,6 +34,15 @@ static bool isContainer() {
   return Library;
 }
 
+bool isNamedByCommandLine() {
+  if (isContainer())
+    return true;
+  for (const std::string &Word : commandLine())
+    if (Word.rfind("__node:=", 0) == 0)
+      return true;
+  return false;
+}
+
 std::string nameByCommandLine() {
   std::string Name, Namespace;
   const std::vector<std::string> Words = commandLine();

@@ -9,6 +9,9 @@
 
 namespace tpc {
 
+/// Whether the name of the process's node does not depend on its program.
+bool isNamedByCommandLine();
+
 /// The name of the first node after the command line's `__node` and `__ns`, or
 /// else as a container of components, or after the program and this process.
 std::string nameByCommandLine();

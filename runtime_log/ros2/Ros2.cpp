@@ -10,7 +10,6 @@
 #include "ros2/Settings.h"
 
 #include <atomic>
-#include <dlfcn.h>
 #include <utility>
 
 using namespace tpc;
@@ -64,21 +63,19 @@ void Ros2::begin() {
     Failure = new std::string(Why);
 }
 
-/// Names a process that makes its nodes where this library does not see it: one
-/// that has loaded rcl before this library, such as a container of components.
+/// Names a process that may have made a node before this library was there.
 void Ros2::nameProcess() {
+  if (!State.IsLate)
+    return;
   const int64_t Now = Clock::steady();
   if (!FirstPoll)
     FirstPoll = Now;
+  if (isNamedByCommandLine())
+    return Graph.setName(nameByCommandLine());
   if (Now - FirstPoll < StartNs)
     return;
-  Dl_info Info;
-  void *Used = dlsym(RTLD_DEFAULT, "rcl_node_init");
-  const bool Sees =
-      Used && dladdr(Used, &Info) && Info.dli_fname &&
-      std::string(Info.dli_fname).find("libtpc_log.so") != std::string::npos;
-  if (!Sees)
-    Graph.setName(nameByCommandLine());
+  const char *Later = State.LateNode;
+  Graph.setName(Later ? Later : nameByCommandLine());
 }
 
 int64_t Ros2::poll() {
@@ -121,7 +118,7 @@ int64_t Ros2::now() {
 /// The names of parameters are relative to the node, and have dots. A handle
 /// that is not known may be that of any node of this process.
 std::string Ros2::resolveName(const void *Handle, const std::string &Name) {
-  if (Handle && State.Nodes != 1)
+  if (Handle && (State.Nodes != 1 || State.IsLate))
     return "";
   const std::string Node = Graph.name();
   return Node.empty() || Name.empty() ? "" : Node + "/" + Name;

@@ -67,10 +67,34 @@ def test_two_objects_with_names_of_their_own_leave_it_open():
 def test_a_parameter_of_ros2_is_the_nodes_own(api, said):
     read = replace(read_at(3, "radius"), api=api)
     given = static(comparison(1, "radius"), reads=[read])
-    assert sources(with_full_names(given, mission([(1, 1, 0, 1, 2)], said), {})) == ["~radius"]
+    found = with_full_names(given, mission([(1, 1, 0, 1, 2)], said), {})
+    assert sources(found) == [f"{NODE}/radius"]
+    assert with_full_names(found, mission([(1, 1, 0, 1, 2)], said), {}) is found
+    # If nothing has evaluated it, its node is not known.
+    assert sources(with_full_names(given, mission([], said[:0]), {})) == ["~radius"]
     # In ROS 1 it is one of the node's namespace.
     old = static(comparison(1, "radius"), reads=[read_at(3, "radius")])
     assert sources(with_full_names(old, mission([(1, 1, 0, 1, 2)]), {})) == ["radius"]
+
+
+# Two processes run one program, and so have one suspect; two nodes of one process have two.
+@pytest.mark.parametrize("is_told", [False, True])
+def test_nodes_of_ros2_are_told_apart_where_their_comparisons_are(is_told):
+    read = replace(read_at(3, "radius"), api="rclpy.node.Node.get_parameter")
+    given = static(comparison(1, "radius"), reads=[read])
+    nodes = "/robot1/guard", "/robot2/guard"
+    for keys, expected in (
+        ((key(1), key(1)), ["~radius"]),
+        ((key(1), f"{key(1)}#2"), [f"{node}/radius" for node in nodes]),
+    ):
+        table = Events(
+            np.array([1, 2], np.int64), np.array([0, len(set(keys)) - 1], np.int32),
+            np.array([True, True]), np.array([3.0, 3.0]), np.array([2.0, 2.0]),
+            np.array([True, True]), np.array([0, 1], np.int32), tuple(sorted(set(keys))), nodes,
+        )  # fmt: skip
+        names = tuple(ReadName(key(90), node, f"{node}/radius") for node in nodes)
+        told = Recording("m", table, (), 0, 10**9, names=names if is_told else ())
+        assert sources(with_full_names(given, told, {})) == expected
 
 
 LOCAL, GLOBAL = "/move_base/local/radius", "/move_base/global/radius"

@@ -110,6 +110,29 @@ def test_many_objects_are_learned_at_once(monkeypatch):
     assert {row.flop_s for row in rows} == {9}
 
 
+# Nodes of Python tell no names; the node that reports completes them, also if it comes late.
+def test_a_parameter_of_ros2_has_the_name_of_its_node():
+    read = ParameterRead(
+        "speed", "rclpy.node.Node.declare_parameter", "double", None, "src/node.cpp", 3, 5, "main",
+        None,
+    )  # fmt: skip
+    given = StaticInfo.of([link_unit([comparison(0, "speed")], [read])])
+    found = Watching(LiveRanking(given), given)
+    before = found.snapshot()
+    for at, cmp in ((100, 4), (102, 2)):
+        found.take(seen(at, 0, cmp, 3, "/robot1/guard"))
+    (row,) = found.look(110 * S, 5).rows["I"]
+    assert row.suspect.parameter == "/robot1/guard/speed"
+    found.take(seen(103, 0, 2, 3, "/robot2/guard"))
+    (row,) = found.look(110 * S, 5).rows["I"]
+    assert row.suspect.parameter == "~speed"
+    before.take(seen(103, 0, 2, 3, "/robot2/guard"))
+    before.look(110 * S, 5)
+    assert [one.source for one in before.static_info.comparisons.values()] == [
+        "/robot2/guard/speed"
+    ]
+
+
 def test_names_that_nodes_tell_are_watched():
     read = ParameterRead(
         "<dynamic>/speed", "ros::NodeHandle::param", "double", None, "src/node.cpp", 3, 5, "main",

@@ -4,7 +4,8 @@
 // $REPORTER_DOMAIN is the number of its graph, in place of $ROS_DOMAIN_ID.
 //
 //   report N PAUSE_US   N reports, the values 0 to N-1; the outcome alternates
-//   simulated NS        the node's clock follows /clock, and it is NS
+//   follow              the node's clock follows /clock
+//   simulated NS        it follows /clock, which is NS
 //   read NAME           a parameter is read
 //   node NAME           one more node
 //   read_on NAME        a parameter of that node is read
@@ -18,6 +19,10 @@
 //   exit | quick        returns from main | _exit
 //
 // Prints `ok` when it is done.
+//
+// With LATE, it is a program that is not built with the log library: the
+// command `load FILE` loads that, once there is a node, as a container of
+// components does.
 //
 //===----------------------------------------------------------------------===//
 #include "LogOne.h"
@@ -37,6 +42,15 @@
 #include <thread>
 #include <unistd.h>
 
+#ifdef LATE
+#include <dlfcn.h>
+static void *Library = nullptr;
+#define CALL(Function, Name)                                                   \
+  (*reinterpret_cast<decltype(&Function)>(dlsym(Library, Name)))
+#else
+#define CALL(Function, Name) Function
+#endif
+
 static char Key[] = "00000001-0000-5000-8000-000000000000";
 static char ReadKey[] = "00000002-0000-5000-8000-000000000000";
 
@@ -50,7 +64,8 @@ static void check(rcl_ret_t Result) {
 static void report(long Count, long PauseUs) {
   auto Next = std::chrono::steady_clock::now();
   for (long I = 0; I < Count; ++I) {
-    log_one(Key, I % 2, static_cast<double>(I), 0.5, I % 2);
+    CALL(log_one, "_Z7log_onePcbddb")(Key, I % 2, static_cast<double>(I), 0.5,
+                                      I % 2);
     Next += std::chrono::microseconds(PauseUs);
     if (PauseUs)
       std::this_thread::sleep_until(Next);
@@ -83,6 +98,16 @@ int main(int Count, char **Words) {
       long Reports, PauseUs;
       std::cin >> Reports >> PauseUs;
       report(Reports, PauseUs);
+#ifdef LATE
+    } else if (Command == "load") {
+      std::string File;
+      std::cin >> File;
+      Library = dlopen(File.c_str(), RTLD_LAZY | RTLD_LOCAL);
+      if (!Library)
+        std::puts(dlerror());
+#endif
+    } else if (Command == "follow") {
+      check(rcl_enable_ros_time_override(&Clock));
     } else if (Command == "simulated") {
       int64_t Ns;
       std::cin >> Ns;
@@ -91,29 +116,32 @@ int main(int Count, char **Words) {
     } else if (Command == "read") {
       std::string Name;
       std::cin >> Name;
-      log_read(ReadKey, nullptr, &Name, false);
+      CALL(log_read, "_Z8log_readPcPKvS1_b")(ReadKey, nullptr, &Name, false);
     } else if (Command == "read_on") {
       std::string Name;
       std::cin >> Name;
-      log_read(ReadKey, &Second, &Name, false);
+      CALL(log_read, "_Z8log_readPcPKvS1_b")(ReadKey, &Second, &Name, false);
     } else if (Command == "made") {
       std::string Name;
       uintptr_t At, Size;
       std::cin >> Name >> At >> Size;
-      log_node(Name.c_str(), reinterpret_cast<void *>(At), Size);
+      CALL(log_node, "_Z8log_nodePKcPKvm")(Name.c_str(),
+                                           reinterpret_cast<void *>(At), Size);
     } else if (Command == "read_in") {
       std::string Of, Name;
       uintptr_t At, Size;
       std::cin >> Of >> Name >> At >> Size;
-      log_read_in(ReadKey, Of.c_str(), &Name, false,
-                  reinterpret_cast<void *>(At), Size);
+      CALL(log_read_in,
+           "_Z11log_read_inPcPKcPKvbS3_m")(ReadKey, Of.c_str(), &Name, false,
+                                           reinterpret_cast<void *>(At), Size);
     } else if (Command == "of") {
       uintptr_t At;
       long Reports;
       std::cin >> At >> Reports;
       for (long I = 0; I < Reports; ++I)
-        log_one_of(Key, I % 2, static_cast<double>(I), 0.5, I % 2,
-                   reinterpret_cast<void *>(At));
+        CALL(log_one_of,
+             "_Z10log_one_ofPcbddbPKv")(Key, I % 2, static_cast<double>(I), 0.5,
+                                        I % 2, reinterpret_cast<void *>(At));
     } else if (Command == "node") {
       std::string Name;
       std::cin >> Name;

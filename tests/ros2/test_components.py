@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 from collections.abc import Callable, Iterator
+from itertools import count
 from pathlib import Path
 
 import pytest
@@ -23,7 +24,7 @@ from pytpc.ros.source import Source
 from pytpc.static.link_unit import Comparison
 from pytpc.static.parameters import base_key, resolved
 from pytpc.static.static_info import collect
-from ros2_dialogue import Peer
+from ros2_dialogue import Peer, events
 from ros2_graph import needs_backend, ros2_env
 from ros2_rclcpp import ROS, compile_on_rclcpp, needs_rclcpp, rclcpp_env, ros_python
 
@@ -91,12 +92,14 @@ def peer(domain: dict[str, str], tmp_path: Path) -> Iterator[Peer]:
     one.process.communicate()
 
 
-def hold(start: Start, cell: Path, kind: str = "_mt", **settings: str) -> subprocess.Popen[str]:
+def hold(
+    start: Start, cell: Path, kind: str = "_mt", *more: str, **settings: str
+) -> subprocess.Popen[str]:
     """A container, remapped as launch does it."""
     assert ROS is not None
     container = ROS / f"lib/rclcpp_components/component_container{kind}"
     words = ["--ros-args", "-r", "__node:=holder", "-r", "__ns:=/cell"]
-    return start(container, *words, ament=cell, **settings)
+    return start(container, *words, *more, ament=cell, **settings)
 
 
 def load(peer: Peer, kind: str, name: str, **values: float) -> int:
@@ -219,6 +222,51 @@ def test_a_listener_hears_the_nodes(cell: Path, peer: Peer, start: Start, sink: 
     assert sorted(map(sorted, nodes.values())) == [
         [FILTERED], [FILTERED], [FRONT], ["/cell/pump"], [REAR],
     ]  # fmt: skip
+
+
+CLOCK = """\
+import rclpy, time
+from rclpy.node import Node
+from rosgraph_msgs.msg import Clock
+rclpy.init()
+node = Node("clock")
+publisher = node.create_publisher(Clock, "/clock", 1)
+for tick in range(1000000):
+    message = Clock()
+    message.clock.sec, message.clock.nanosec = 1000 + tick // 100, tick % 100 * 10**7
+    publisher.publish(message)
+    time.sleep(0.01)
+"""
+
+
+# Simulated time begins at 1000 s, and no test takes a day. Until the first message on /clock, the
+# time of a component is 0, and that of a container is not known to be simulated.
+@pytest.mark.parametrize("way", ["component file", "component topic", "container file"])
+def test_reports_of_a_container_have_simulated_time(
+    cell: Path, peer: Peer, start: Start, tmp_path: Path, way: str
+) -> None:
+    whose, sink = way.split()
+    clock = tmp_path / "clock.py"
+    clock.write_text(CLOCK)
+    start(ros_python(), str(clock))
+    more = ("-p", "use_sim_time:=true") if whose == "container" else ()
+    values = {"use_sim_time": True} if whose == "component" else {}
+    hold(start, cell, "", *more, sink=sink)
+    load(peer, "Gauge", "front", **values)
+
+    def has_time(turn: int) -> bool:
+        """Whether the pressures of one more pump have it; those before may stand after them."""
+        load(peer, "Pump", f"pump{turn}", listeners=1, **values)
+        if sink == "file":
+            wait_for_reports(tmp_path / "m", cell / "static", 10 * turn)
+            found = [time_ns / 1e9 for time_ns in read(tmp_path / "m").events.time_ns]
+        else:
+            heard = peer.ask("heard", 11 * turn)["batches"]
+            found = [float(line.split(",")[0]) for batch in heard for line in events(batch)]
+        return sum(1000 <= time < 1000 + 86400 for time in found) >= 10
+
+    turns = count(1)
+    wait_for(lambda: has_time(next(turns)))
 
 
 def test_a_component_that_is_loaded_again_is_another_one(

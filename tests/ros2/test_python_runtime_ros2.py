@@ -337,6 +337,48 @@ for number in range(100):
     assert listener.values(f"/end_{end}") == expected
 
 
+# rclpy has a thread that shuts all contexts down after a signal: sooner or later than the end.
+SHUT = "until(lambda: not node.context.ok())"
+WHEN_SHUT = {
+    # The sink has looked, and has found nobody yet.
+    "before": "from rclpy.publisher import Publisher\n"
+    "from pytpc.python_runtime.ros2_link import Link\n"
+    "found = Publisher.get_subscription_count, Link.known_subscribers\n"
+    "Publisher.get_subscription_count = lambda self: 0\n"
+    "Link.known_subscribers = lambda self, topic: 0\n"
+    "time.sleep(1.0)\n"
+    "Publisher.get_subscription_count, Link.known_subscribers = found\n"
+    f"interrupt()\n{SHUT}",
+    "while it sends": "from pytpc.python_runtime.ros2_sinks import TopicSink\n"
+    "finish = TopicSink.finish\n"
+    "def interrupted(self):\n"
+    f"    TopicSink.finish = finish\n    interrupt()\n    {SHUT}\n    finish(self)\n"
+    "TopicSink.finish = interrupted",
+}
+
+
+@pytest.mark.parametrize("when", WHEN_SHUT)
+def test_a_signal_near_the_end_loses_no_report(domain, tmp_path, listener, when):
+    name = f"end_{when.replace(' ', '_')}"
+    text = f"""
+rclpy.init()
+node = Node("{name}")
+def interrupt():
+    try:
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(10.0)
+    except KeyboardInterrupt:
+        pass
+for number in range(100):
+    high(float(number))
+{WHEN_SHUT[when]}
+"""
+    done = Program(tmp_path, domain, text).run(TPC_SINK="topic")
+    assert (done.returncode, done.stderr) == (0, "")
+    wait_for(lambda: len(listener.values(f"/{name}")) >= 100)
+    assert listener.values(f"/{name}") == [float(number) for number in range(100)]
+
+
 def test_a_node_that_is_killed_leaves_its_file(domain, tmp_path):
     text = """
 rclpy.init()

@@ -35,7 +35,13 @@ def start(program: Path, domain: dict[str, str], tmp_path: Path) -> Iterator[Sta
     """Start a node: more words of its command line, then settings (``sink="file"``)."""
     started: list[Dialogue] = []
 
-    def run(*words: str, libraries: str = "", chosen_domain: str = "", **settings: str) -> Dialogue:
+    def run(
+        *words: str,
+        libraries: str = "",
+        chosen_domain: str = "",
+        other: Path | None = None,
+        **settings: str,
+    ) -> Dialogue:
         changed = {f"TPC_{name.upper()}": value for name, value in settings.items()}
         more = {"TPC_FOLDER": str(tmp_path / "reports"), **wheels_env(), **changed}
         if libraries:
@@ -43,7 +49,7 @@ def start(program: Path, domain: dict[str, str], tmp_path: Path) -> Iterator[Sta
         if chosen_domain:
             more |= {"REPORTER_DOMAIN": chosen_domain, "ROS_DOMAIN_ID": "0"}
         node = Dialogue(
-            [str(program), "guard", "/robot1", *words],
+            [str(other or program), "guard", "/robot1", *words],
             ros2_env(domain, **more),
             tmp_path / f"node-{len(started)}.err",
         )
@@ -198,6 +204,62 @@ def test_the_first_node_names_the_process(peer: Peer, start: Start) -> None:
     (batch,) = peer.ask("heard", 1)["batches"]
     assert batch.split("\n")[0].endswith(",node:/robot1/keeper")
     assert node.finish() == 0
+
+
+@pytest.fixture(scope="module", params=["lazy", "now"])
+def late(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A program that loads the log library after rcl, its calls bound at the start or not."""
+    words = "-DLATE", f"-Wl,-z,{request.param},-z,relro"
+    output = tmp_path_factory.mktemp("late") / "reporter"
+    return compile_on_rcl(HERE / "reporter.cpp", output, *words, with_log=False)
+
+
+LOAD = f"load {prefix()}/lib/libtpc_log.so.0"
+
+
+# As in a container: its own node is there, and follows /clock, before it loads a component.
+def test_a_program_that_had_rcl_before_has_its_names_and_time(
+    peer: Peer, start: Start, late: Path
+) -> None:
+    words = ("--ros-args", "-r", "__node:=guard", "-r", "__ns:=/robot1")
+    node = start(*words, other=late, sink="topic")
+    node.say("follow")
+    node.say(LOAD)
+    node.say("simulated 12500000000")
+    node.say("report 2 0")
+    node.say("node second")
+    node.say("made /second 2000 100")
+    node.say("of 2000 2")
+    node.say("read_on of.node")
+    assert peer.ask("get", SETTINGS, "sink") == ["topic"]
+    lines = [line for batch in peer.ask("heard", 4)["batches"] for line in batch.split("\n")[1:]]
+    assert {line.split(",")[0] for line in lines if ",threshold_" not in line} == {"12.5000000"}
+    node.say("simulated 13500000000")
+    # What waits is sent at once, as the program is shut down.
+    node.say("report 1 0")
+    node.say("shutdown")
+    batches = peer.ask("heard", 5)["batches"]
+    assert {batch.split("\n")[0].split(",node:")[1] for batch in batches} == {GUARD}
+    assert events(batches[-1])[-1].startswith("13.5000000,")
+    told = "".join(batches)
+    assert "threshold_name:00000001-0000-5000-8000-000000000000,node:/second" in told
+    # The rule for the first node's name is one for all nodes.
+    assert f"threshold_name:00000002-0000-5000-8000-000000000000,{GUARD}/of.node" in told
+    assert node.finish() == 0
+    assert node.errors() == ""
+
+
+@pytest.mark.parametrize("line", ["node second", "read_in /second limit 2000 8"])
+def test_a_program_that_had_rcl_before_is_named_after_the_first_known_node(
+    start: Start, late: Path, tmp_path: Path, line: str
+) -> None:
+    node = start(other=late, sink="file")
+    node.say(LOAD)
+    node.say(line)
+    node.say("report 2 700000")
+    node.say("report 2 0")
+    assert node.finish() == 0
+    assert read(tmp_path / "reports").events.nodes == (SECOND,)
 
 
 SECOND = "/second"

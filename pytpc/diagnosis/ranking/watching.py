@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from pytpc.diagnosis.full_names import with_full_names
+from pytpc.diagnosis.full_names import is_of_ros2, with_full_names
 from pytpc.diagnosis.question import WINDOW_S
 from pytpc.diagnosis.results.live import Kept, LiveRow, Look, Seen, TrendPart
 from pytpc.diagnosis.results.suspects import MarkRanking, Suspect
@@ -76,6 +76,15 @@ class Watching:
         self._waiting: list[Seen | Summary] = []
         self._names: set[ReadName] = set()
         self._has_new_names = False
+        self._of_ros2 = frozenset(
+            one.key
+            for unit in static_info.units
+            for one in unit.comparisons
+            if is_of_ros2(one, unit)
+        )
+        # Of those, by key: they complete the names of parameters.
+        self._nodes: dict[str, frozenset[str]] = {}
+        self._reporting: set[tuple[str, str]] = set()
         self._bin_ns = max(1, round(window_s * 1e9) // BINS)
         self._tracks: dict[str, _Track] = {}
         self.differing: frozenset[str] = frozenset()
@@ -150,6 +159,8 @@ class Watching:
         as for hundreds.
         """
         key = report.key
+        if (key, report.node) not in self._reporting:
+            self._note_node(key, report.node)
         if key in self._known:
             return True
         if base_key(key) in self._known and key not in self._learned:
@@ -162,11 +173,17 @@ class Watching:
         self.unknown[key] = self.unknown.get(key, 0) + count
         return False
 
+    def _note_node(self, key: str, node: str) -> None:
+        self._reporting.add((key, node))
+        if base_key(key) in self._of_ros2:
+            self._nodes[key] = self._nodes.get(key, frozenset()) | {node}
+            self._has_new_names = True
+
     def _learn(self) -> None:
         """Give the instances that were seen, and the names that were told, to the ranking."""
         keys = Events.empty(sorted(self._instances))
         told = Recording("", keys, (), 0, 0, names=tuple(sorted(self._names)))
-        self.static_info = with_full_names(self._given, told, {})
+        self.static_info = with_full_names(self._given, told, {}, self._nodes)
         self._known = self.static_info.comparisons
         self._engine.learn(self.static_info)
         self._has_new_names = False
