@@ -98,10 +98,15 @@ const Follower::Stored &Follower::describeStore(StoreInst &Store) {
 
 /// True if \p To is one variable that holds a threshold, whatever it was
 /// computed from: not an element of an array or of a container, which holds
-/// data.
-static bool keepsFormula(const Follower::Stored &To) {
-  return To.Targets == 1 && all_of(To.Written, [](const ScalarPart &P) {
-           return !P.Size && P.Where.isOne() && !P.Where.isElement();
+/// data, and no mean or sum that the program moves on elsewhere.
+bool Follower::keepsFormula(const Stored &To) const {
+  return To.Targets == 1 && all_of(To.Written, [&](const ScalarPart &P) {
+           return !P.Size && P.Where.isOne() && !P.Where.isElement() &&
+                  none_of(Accesses.writesOf(P.Where).Own,
+                          [](const Instruction *Write) {
+                            const auto *Store = dyn_cast<StoreInst>(Write);
+                            return Store && isMovedOn(*Store);
+                          });
          });
 }
 

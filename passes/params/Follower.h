@@ -99,6 +99,7 @@ private:
   void followAll(unsigned N);
   llvm::SmallVector<Decision, 2> followOutcome(llvm::Value *Outcome,
                                                const CallPath *Path);
+  bool keepsFormula(const Stored &To) const;
   bool followRepacked(const State &S, llvm::Use &U);
   bool carry(const State &S, llvm::Use &U);
   void load(const State &S, llvm::Instruction &Write,

@@ -146,6 +146,26 @@ bool Sides::isConfigured(const Value *V) {
   return Known[V] = true;
 }
 
+static const Value *stripCasts(const Value *V) {
+  while (const auto *Cast = dyn_cast<CastInst>(V))
+    V = Cast->getOperand(0);
+  return V;
+}
+
+/// True if \p V is read from a member or global in which the program stores
+/// constants alone: a threshold that somebody wrote down. A local is the
+/// beginning of a computation.
+bool Sides::isWrittenDown(const Value *V) const {
+  const auto *Load = dyn_cast<LoadInst>(stripCasts(V));
+  Sources From;
+  return Load && addStored(*Load, From) && !From.empty() &&
+         all_of(From, [](const Value *S) { return isa<Constant>(S); }) &&
+         none_of(Pointers.resolve(Load->getPointerOperand(), true),
+                 [](const Location &L) {
+                   return isa_and_nonnull<AllocaInst>(L.Root);
+                 });
+}
+
 /// The length of the path from the read to the predicate.
 size_t Sides::lengthOf(const ParameterComparison &C) const {
   return C.Decisions.empty() ? 0 : Usage.pathTo(C.Decisions.front().Way).size();
@@ -177,12 +197,6 @@ bool Sides::isOtherWay(const ParameterComparison &C,
                              });
 }
 
-static const Value *stripCasts(const Value *V) {
-  while (const auto *Cast = dyn_cast<CastInst>(V))
-    V = Cast->getOperand(0);
-  return V;
-}
-
 bool Sides::isMeasured(const ParameterComparison &C,
                        const Instruction &Predicate) {
   if (!C.Compare)
@@ -195,6 +209,9 @@ bool Sides::isMeasured(const ParameterComparison &C,
     return true;
   const Value *Own = C.Compare->getOperand(C.Operand);
   const Value *Other = C.Compare->getOperand(1 - C.Operand);
+  // As where it is compared with a constant itself.
+  if (C.How.Variables && isWrittenDown(Other))
+    return true;
   const bool AreBoth = any_of(Others, [&](const ParameterComparison *O) {
     return O->Operand != C.Operand && decides(*O, Predicate);
   });

@@ -39,6 +39,7 @@ public:
 private:
   using Sources = llvm::SmallVector<const llvm::Value *, 8>;
   bool isConfigured(const llvm::Value *V);
+  bool isWrittenDown(const llvm::Value *V) const;
   Locations writtenBy(const llvm::Instruction &Write) const;
   bool addSources(const llvm::Value *V, Sources &Out) const;
   bool addStored(const llvm::LoadInst &Load, Sources &Out) const;
