@@ -204,10 +204,12 @@ const Rules::Match &Rules::match(const Function &F) const {
   auto [Class, Method] = Converts ? std::pair(Name.take_front(Conversion),
                                               Name.drop_front(Conversion + 2))
                                   : Name.rsplit("::");
+  static constexpr StringRef Elements[] = {"operator[]", "at", "front", "back"};
   if (ContainerClasses.contains(Class))
     M.Container = ContainerMethod{
         !F.getName().starts_with("_ZNK") && !Converts &&
-        !ReadingMethods.contains(Method) && !Method.starts_with("~")};
+            !ReadingMethods.contains(Method) && !Method.starts_with("~"),
+        is_contained(Elements, Method)};
   return M;
 }
 

@@ -106,7 +106,8 @@ struct Rule {
 
 /// A method of a container.
 struct ContainerMethod {
-  bool Writes; ///< puts its arguments into the container
+  bool Writes;    ///< puts its arguments into the container
+  bool IsElement; ///< returns an element, or a reference to one
 };
 
 /// The IR operand of \p Call for the argument that the source counts as

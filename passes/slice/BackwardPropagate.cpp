@@ -317,19 +317,12 @@ static bool isUsed(const Value *Arg, const CallBase &Call, const Rule *Row) {
          Arg != objectOf(Call, *Row);
 }
 
-/// True if \p Call returns an element of a container itself, and no reference
-/// to it: those of a std::vector<bool> are bits.
-static bool returnsElement(const CallBase &Call, const RuleMatches &Rules) {
-  static constexpr StringRef Names[] = {"operator[]", "at", "front", "back"};
-  return Rules.container(Call) && Call.getType()->isIntegerTy() &&
-         is_contained(Names, unscoped(qualifiedName(
-                                 Call.getCalledFunction()->getName())));
-}
-
 /// The arguments of \p Call matter.
 void Slicer::enterArguments(const CallBase &Call) {
   const Rule *Row = Rules.match(Call);
-  if (returnsElement(Call, Rules)) {
+  // No reference to it: the elements of a std::vector<bool> are bits.
+  if (const ContainerMethod *Method = Rules.container(Call);
+      Method && Method->IsElement && Call.getType()->isIntegerTy()) {
     const Value *Container = containerOf(Call);
     Locations Elements;
     Pointers.addElements(Container, Elements);
