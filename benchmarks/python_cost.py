@@ -11,7 +11,6 @@ nothing, and one that imports rospy, with the hook and without it.
 from __future__ import annotations
 
 import contextlib
-import json
 import os
 import resource
 import statistics
@@ -24,6 +23,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from figures import figure
+from loop_static import key, static_of
 
 from pytpc.ros.ros1.graph import RosGraph
 
@@ -35,7 +35,6 @@ PYTHON = "/usr/bin/python3"
 ROUNDS = 5
 STARTS = 15
 STARTED = {"start": "pass\n", "start_rospy": "import rospy\n"}
-KEY = "00000001-0000-5000-8000-000000000001"
 LINE = "        if number > limit:"
 LOOP = f"""\
 import sys, time
@@ -52,7 +51,7 @@ def compare():
     return hits
 publisher = rospy.Publisher("/threshold_information", String, queue_size=100)
 def publish(number, outcome):
-    publisher.publish(String("%.7f,{KEY},%s,cmp:%r,thresh:%r,res:%s"
+    publisher.publish(String("%.7f,{key(1)},%s,cmp:%r,thresh:%r,res:%s"
                              % (time.time(), outcome, number, limit, outcome)))
     return outcome
 def by_publish():
@@ -90,24 +89,6 @@ WAYS: Mapping[str, tuple[str | None, str, int]] = {
     "rosout": ("rosout", "every", 10_000),
     "publish": (None, "", 10_000),
 }
-
-
-def static_of(script: Path) -> str:
-    """The static information of the loop."""
-    lineno = LOOP.splitlines().index(LINE) + 1
-    comparison = {
-        "key": KEY,
-        "relation": ">",
-        "file": script.name,
-        "lineno": lineno,
-        "column": LINE.index("number") + 1,
-        "name": "limit",
-        "operand": "right",
-        "source_code": LINE.strip(),
-    }
-    root = str(script.parent)
-    unit = {"link_unit": script.stem, "source_root": root, "comparisons": [comparison]}
-    return json.dumps({"schema": 1, "units": [unit]})
 
 
 def nanoseconds(folder: Path, env: Mapping[str, str], way: str) -> float:
@@ -161,7 +142,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "loop.py").write_text(LOOP)
-        (folder / "static.json").write_text(static_of(folder / "loop.py"))
+        (folder / "static.json").write_text(static_of(folder / "loop.py", LOOP, LINE))
         starts = {name: starting(folder, text) for name, text in STARTED.items()}
         with RosGraph(dict(os.environ), folder / "graph") as graph:
             env = {**os.environ, "ROS_MASTER_URI": graph.uri, "ROS_IP": "127.0.0.1"}

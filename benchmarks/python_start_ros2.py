@@ -8,7 +8,6 @@ a thousand comparisons in a hundred files, as that of a workspace has; one is th
 
 from __future__ import annotations
 
-import json
 import os
 import statistics
 import subprocess
@@ -20,6 +19,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from figures import figure
+from loop_static import static_of
 
 from pytpc_evaluation.demo.ros2_robot import own_domain
 
@@ -29,7 +29,7 @@ RUN = str(ROOT / "pytpc/python_runtime/run.py")
 PYTHON = ROOT / ".venv-ros2/bin/python"
 ROUNDS = 21
 MOST_MS = 50.0
-FILES, OF_EACH = 100, 10
+OTHERS = [(f"other_{file}.py", 10 * number + 1, 5) for file in range(100) for number in range(10)]
 LINE = "    return speed > limit"
 NODE = f"""\
 import rclpy
@@ -53,31 +53,6 @@ rclpy.spin(node)
 """
 # "" is the plain node.
 SINKS = ("", "auto", "topic", "file")
-
-
-def static_of(node: Path) -> str:
-    """The static information: the node's comparison, and those of other files."""
-    here = (node.name, NODE.splitlines().index(LINE) + 1, LINE.index("speed") + 1)
-    others = [
-        (f"other_{file}.py", 10 * number + 1, 5)
-        for file in range(FILES)
-        for number in range(OF_EACH)
-    ]
-    comparisons = [
-        {
-            "key": f"{number:08x}-0000-5000-8000-000000000001",
-            "relation": ">",
-            "file": file,
-            "lineno": lineno,
-            "column": column,
-            "name": "limit",
-            "operand": "right",
-            "source_code": LINE.strip(),
-        }
-        for number, (file, lineno, column) in enumerate([here, *others])
-    ]
-    unit = {"link_unit": "starter", "source_root": str(node.parent), "comparisons": comparisons}
-    return json.dumps({"schema": 1, "units": [unit]})
 
 
 def milliseconds(folder: Path, env: Mapping[str, str], sink: str) -> float:
@@ -104,7 +79,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name, own_domain() as domain:
         folder = Path(name)
         (folder / "starter.py").write_text(NODE)
-        (folder / "static.json").write_text(static_of(folder / "starter.py"))
+        (folder / "static.json").write_text(static_of(folder / "starter.py", NODE, LINE, OTHERS))
         env = {"PATH": os.defpath, "HOME": name, **domain}
         # The first ones write what Python caches.
         for sink in SINKS:

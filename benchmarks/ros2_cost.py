@@ -8,7 +8,6 @@ second to `pytpc record`, and one is killed (SIGKILL) behind its last report to 
 
 from __future__ import annotations
 
-import json
 import os
 import shlex
 import statistics
@@ -18,9 +17,10 @@ import tempfile
 from pathlib import Path
 
 from figures import figure
+from loop_static import static_of
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "evaluation")]
+sys.path.insert(0, str(ROOT / "tests"))
 
 from pytpc.base.paths import prefix  # noqa: E402
 from pytpc.ingest.reading import read  # noqa: E402
@@ -36,7 +36,6 @@ ROUNDS = 5
 RATE = 5_000
 REPORTS = 40_000
 FILE = {"TPC_SINK": "file", "TPC_POLICY": "every"}
-KEY = "00000001-0000-5000-8000-000000000001"
 LINE = "        if number > limit:"
 LOOP = f"""\
 import sys, time
@@ -62,22 +61,6 @@ STARTS = {
 }
 
 
-def static_of(script: Path) -> str:
-    """The static information of a loop."""
-    comparison = {
-        "key": KEY,
-        "relation": ">",
-        "file": script.name,
-        "lineno": script.read_text().splitlines().index(LINE) + 1,
-        "column": LINE.index("number") + 1,
-        "name": "limit",
-        "operand": "right",
-        "source_code": LINE.strip(),
-    }
-    unit = {"link_unit": "loop", "source_root": str(script.parent), "comparisons": [comparison]}
-    return json.dumps({"schema": 1, "units": [unit]})
-
-
 class Nodes:
     """The nodes of both systems, and their environments."""
 
@@ -101,8 +84,9 @@ class Nodes:
         subprocess.run([*clang, "-o", str(folder / "ros1"), *words], check=True)
         for system, start in STARTS.items():
             script = folder / f"{system}.py"
-            script.write_text(LOOP.format(start=start))
-            (folder / f"{system}.json").write_text(static_of(script))
+            text = LOOP.format(start=start)
+            script.write_text(text)
+            (folder / f"{system}.json").write_text(static_of(script, text, LINE))
 
     def cpp(self, system: str) -> float:
         """Nanoseconds of a report."""
