@@ -32,7 +32,8 @@ COLCON_EXTENSIONS = (
     "colcon-ros",
 )
 ROS_PACKAGES = "ros-core-dev libroscpp-dev"
-ROS_PREFIXES = [*sorted(Path("/opt/ros").glob("*")), Path("/usr")]
+ROS_DISTRIBUTIONS = Path("/opt/ros")
+ROS_PREFIXES = [*sorted(ROS_DISTRIBUTIONS.glob("*")), Path("/usr")]
 _CMAKE_FILE = "share/tpc/cmake/tpc.cmake"
 _RELEASE_FILE = "share/tpc/clang-version"
 # The wheel has the C++ half here, in a folder per release: llvm-19, llvm-22.

@@ -28,6 +28,7 @@ BINS = 8
 """The number of parts of the window that are shown of each comparison."""
 
 _MOST_WAITING = 100_000
+_NOBODY: frozenset[str] = frozenset()
 """So many reports of new instances wait for a look."""
 
 KINDS: tuple[MarkType | None, ...] = ("I", "II", None)
@@ -82,9 +83,8 @@ class Watching:
             for one in unit.comparisons
             if is_of_ros2(one, unit)
         )
-        # Of those, by key: they complete the names of parameters.
+        # By key; they complete the names of parameters of ROS 2.
         self._nodes: dict[str, frozenset[str]] = {}
-        self._reporting: set[tuple[str, str]] = set()
         self._bin_ns = max(1, round(window_s * 1e9) // BINS)
         self._tracks: dict[str, _Track] = {}
         self.differing: frozenset[str] = frozenset()
@@ -159,7 +159,7 @@ class Watching:
         as for hundreds.
         """
         key = report.key
-        if (key, report.node) not in self._reporting:
+        if report.node not in self._nodes.get(key, _NOBODY):
             self._note_node(key, report.node)
         if key in self._known:
             return True
@@ -174,16 +174,15 @@ class Watching:
         return False
 
     def _note_node(self, key: str, node: str) -> None:
-        self._reporting.add((key, node))
-        if base_key(key) in self._of_ros2:
-            self._nodes[key] = self._nodes.get(key, frozenset()) | {node}
-            self._has_new_names = True
+        self._nodes[key] = self._nodes.get(key, _NOBODY) | {node}
+        self._has_new_names |= base_key(key) in self._of_ros2
 
     def _learn(self) -> None:
         """Give the instances that were seen, and the names that were told, to the ranking."""
         keys = Events.empty(sorted(self._instances))
         told = Recording("", keys, (), 0, 0, names=tuple(sorted(self._names)))
-        self.static_info = with_full_names(self._given, told, {}, self._nodes)
+        nodes = {k: some for k, some in self._nodes.items() if base_key(k) in self._of_ros2}
+        self.static_info = with_full_names(self._given, told, {}, nodes)
         self._known = self.static_info.comparisons
         self._engine.learn(self.static_info)
         self._has_new_names = False

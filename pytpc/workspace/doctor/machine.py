@@ -18,6 +18,7 @@ from pathlib import Path
 
 from pytpc.base.paths import (
     COLCON_EXTENSIONS,
+    ROS_DISTRIBUTIONS,
     ROS_PACKAGES,
     ROS_PREFIXES,
     SYSTEM_PATH,
@@ -59,7 +60,6 @@ _PARTS = (
 _ROS1_PART = "lib/libtpc_log_ros1.so"
 # The same for ROS 2; it is built where rcl's headers are.
 _ROS2_PART = "lib/libtpc_log_ros2.so"
-_DISTRIBUTIONS = Path("/opt/ros")
 _RCL, _RCL_HEADER = "lib/librcl.so", "include/rcl/rcl/rcl.h"
 _PATIENCE_S = 60
 # What /usr/bin/python3 is asked: a dictionary with "modules" and "colcon".
@@ -175,9 +175,9 @@ def look_at_machine(folder: Path) -> Machine:
 
 
 def _prefix_of_rcl(environment: Mapping[str, str]) -> Path | None:
-    """That of the ROS 2 in use, else one in /opt/ros; one that has headers comes first."""
+    """That of the ROS 2 in use, else one where ROS is installed; one with headers comes first."""
     ros2 = find_ros2(environment)
-    places = [*(ros2.prefixes if ros2 else ()), *sorted(_DISTRIBUTIONS.glob("*"))]
+    places = [*(ros2.prefixes if ros2 else ()), *ROS_PREFIXES]
     having = [place for place in places if (place / _RCL).exists()]
     return next((one for one in having if (one / _RCL_HEADER).is_file()), next(iter(having), None))
 
@@ -384,7 +384,7 @@ def _part_of_ros2(machine: Machine, rcl: Path) -> Finding:
     what = "the log library has no part for ROS 2, so C++ nodes of ROS 2 write files alone"
     if not machine.has_rcl_header:
         what += "; to build it, install the headers of rcl"
-        is_debian = rcl.parent == _DISTRIBUTIONS
+        is_debian = rcl.parent == ROS_DISTRIBUTIONS
         return warning(what, rcl, f"apt-get install ros-{rcl.name}-rcl" if is_debian else None)
     return warning(what, rcl, _build_log_library(machine.prefix, machine.release, rcl))
 
