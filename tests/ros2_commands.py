@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import contextlib
+import re
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from contextlib import AbstractContextManager
 from pathlib import Path
 
-from patience import PATIENCE_S
+from patience import PATIENCE_S, wait_for
 from pytpc.base.paths import project_root
 
 Running = AbstractContextManager[subprocess.Popen[str]]
@@ -68,17 +68,27 @@ def interrupted(process: subprocess.Popen[str]) -> str:
     return out + err
 
 
+def read_until(process: subprocess.Popen[str], pattern: str) -> list[str]:
+    """The lines on standard error up to the one in which this pattern is."""
+    assert process.stderr is not None
+    said = []
+    for line in process.stderr:
+        said.append(line)
+        if re.search(pattern, line):
+            return said
+    raise AssertionError(said)
+
+
 @contextlib.contextmanager
 def recorder(env: dict[str, str], folder: Path, *words: str) -> Iterator[subprocess.Popen[str]]:
     """`pytpc record` into ``mission``, once other commands find it."""
     with running(pytpc("record", "-o", "mission", *words), env, folder) as process:
-        for line in process.stderr:
-            if "press Ctrl-C to stop" in line:
-                break
+        read_until(process, "press Ctrl-C to stop")
         entries = Path(env["XDG_RUNTIME_DIR"]) / "pytpc"
-        until = time.monotonic() + PATIENCE_S
-        while not (entries.is_dir() and any(entries.iterdir())):
-            assert time.monotonic() < until
+
+        def is_found() -> bool:
             assert process.poll() is None, process.stderr.read()
-            time.sleep(0.05)
+            return entries.is_dir() and any(entries.iterdir())
+
+        wait_for(is_found)
         yield process

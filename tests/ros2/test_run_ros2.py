@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import re
 import signal
 import subprocess
 from pathlib import Path
@@ -17,7 +16,7 @@ from pytpc.build.build import build_workspace
 from pytpc.ingest.reading import read
 from pytpc.recording.marks import Mark, write_marks
 from pytpc.values.origins import read_origins
-from ros2_commands import Running, interrupted, pytpc, running, told
+from ros2_commands import Running, interrupted, pytpc, read_until, running, told
 from ros2_graph import PYTHON
 from ros2_workspace import make_ros2_workspace
 from terminals import Terminal
@@ -110,15 +109,6 @@ def launch_env(env: dict[str, str]) -> dict[str, str]:
 
 def started(env: dict[str, str], folder: Path, *words: object) -> Running:
     return running(pytpc(*words), env, folder)
-
-
-def read_until(process: subprocess.Popen, words: str) -> list[str]:
-    said = []
-    for line in process.stderr:
-        said.append(line)
-        if re.search(words, line):
-            return said
-    raise AssertionError(said)
 
 
 def left_in(folder: Path) -> list[str]:
