@@ -15,6 +15,8 @@ from patience import PATIENCE_S, wait_for
 from pytpc.base.paths import project_root
 
 Running = AbstractContextManager[subprocess.Popen[str]]
+SOME_REPORTS = r" [1-9][\d,]* reports"
+"""What `record` says once a node has been heard."""
 
 
 def pytpc(*words: object) -> list[str]:

@@ -12,7 +12,7 @@ from patience import PATIENCE_S
 from pytpc.ingest.reading import read
 from pytpc.recording.parameter_values import ParameterValues
 from pytpc.static.static_info import StaticInfo
-from ros2_commands import interrupted, pytpc, recorder, running, told
+from ros2_commands import SOME_REPORTS, interrupted, pytpc, read_until, recorder, running, told
 from ros2_graph import PYTHON
 from terminals import Terminal
 
@@ -108,6 +108,7 @@ def test_marks_of_two_observers_are_ranked_by(env: dict[str, str], tmp_path: Pat
     with contextlib.ExitStack() as stack:
         process = stack.enter_context(recorder(env, tmp_path, "--static", "static.json"))
         stack.enter_context(guard(env, tmp_path, 50, 600.0, key))
+        read_until(process, SOME_REPORTS)
         found = json.loads(told(env, tmp_path, "watch", "--once", "--seconds", "2", "--json"))
         assert "limits.speed" in json.dumps(found)
         for observer, press in (("ana", "1"), ("ben", "2")):

@@ -16,7 +16,7 @@ from pytpc.build.build import build_workspace
 from pytpc.ingest.reading import read
 from pytpc.recording.marks import Mark, write_marks
 from pytpc.values.origins import read_origins
-from ros2_commands import Running, interrupted, pytpc, read_until, running, told
+from ros2_commands import SOME_REPORTS, Running, interrupted, pytpc, read_until, running, told
 from ros2_graph import PYTHON
 from ros2_workspace import make_ros2_workspace
 from terminals import Terminal
@@ -77,7 +77,6 @@ def generate_launch_description():
     ])
 """
 LIMIT = "/robot1/guard/speed_limit"
-SOME_REPORTS = r" [1-9][\d,]* reports"
 
 
 @pytest.fixture(scope="module")
