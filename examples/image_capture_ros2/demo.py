@@ -4,8 +4,8 @@
 
 Three missions: a clean one, one with a threshold that is too low (type I) and one with a threshold
 that is too high (type II). A scripted observer, who sees only what the UAV does, says when it does
-wrong. Status 1 if a mission does not go as its treatment demands, or if the changed parameter is
-not among the first three suspects at a mark of the right type.
+wrong. Status 1 if a mission does not go as its treatment demands, or if the
+diagnosis does not blame the changed parameter.
 """
 
 from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE_ROS2

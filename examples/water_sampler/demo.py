@@ -4,8 +4,8 @@
 
 A clean mission, and missions with one changed parameter, which is compared in C++ or in Python;
 one ranking across both. A scripted observer, who sees and hears only what the UAV does, says when
-it does wrong. Status 1 if a mission does not go as its treatment demands, or if the changed
-parameter is not among the first three suspects at a mark of the right type.
+it does wrong. Status 1 if a mission does not go as its treatment demands, or if the
+diagnosis does not blame the changed parameter.
 """
 
 from pytpc_evaluation.demo.demo_examples import WATER_SAMPLER

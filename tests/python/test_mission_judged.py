@@ -8,17 +8,20 @@ from pathlib import Path
 
 import pytest
 import yaml
-from mission_samples import comparison, events, mission_run, ns, static_info
+from mission_samples import comparison, events, key, mission_run, ns, static_info
 from rich.console import Console
 
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
+from pytpc.diagnosis.results.diagnosis import Diagnosis
+from pytpc.diagnosis.results.differences import RunDifferences
+from pytpc.diagnosis.results.suspects import Accused, Blame, Evaluation
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
 from pytpc.ros.mission_run import (
     MissionRun,
 )
-from pytpc_evaluation.demo.demo import TreatedMission, failures, result_table
+from pytpc_evaluation.demo.demo import TreatedMission, gone_wrong, not_named, result_table
 from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER, Example
 from pytpc_evaluation.treatment import Treatment, load_treatment
 
@@ -162,54 +165,64 @@ def flown(
     return TreatedMission(example, treatment, 1, run, recording, rankings)
 
 
-# Type I scores are (mark - last flop) * (1 + flops). At 10 s: the limit flopped once at 9 s, which
-# makes 1 * 2 = 2. Others: flopped at 9.5 s, 0.5 * 2 = 1, each of them before the limit.
 LIMIT_ROWS = [(8.0, 1, 0, 2.0, 3.0), (9.0, 1, 1, 4.0, 3.0)]
 
 
-def other_rows(number: int) -> list:
-    return [(8.0, number, 0, 2.0, 3.0), (9.5, number, 1, 4.0, 3.0)]
+NO_DIFFERENCES = RunDifferences(("good",), "bad", (), is_complete=True)
 
 
-def test_culprit_among_the_first_three_is_no_failure(tmp_path):
-    rows = [*LIMIT_ROWS, *other_rows(2), *other_rows(3)]
-    mission = flown(TYPE1, mission_run(tmp_path), [Mark(ns(10.0), "I")], rows)
-    assert mission.rankings[0].position_of("limit") == 3
-    assert failures(mission) == []
+def diagnosis(*shares: tuple[str, float], good: RunDifferences | None = None) -> Diagnosis:
+    """A diagnosis with the given parameters and probabilities; the rest is that it is none."""
+    last = Evaluation(ns(9.0), True, 4.0, 3.0, True, "/m")
+    suspects = tuple(
+        Accused(place, False, name, share, "I", key(1), LIMIT, last)
+        for place, (name, share) in enumerate(shares, start=1)
+    )
+    none = 1.0 - sum(share for _, share in shares)
+    return Diagnosis(Blame(suspects, none, len(suspects), (), ()), (), good)
 
 
-def test_culprit_at_the_fourth_place_is_a_failure(tmp_path):
-    rows = [*LIMIT_ROWS, *other_rows(2), *other_rows(3), *other_rows(4)]
-    mission = flown(TYPE1, mission_run(tmp_path), [Mark(ns(10.0), "I")], rows)
-    assert failures(mission) == ["low: limit is at position 4 at the mark 10.0 s"]
+def marked(tmp_path, *marks: Mark) -> TreatedMission:
+    return flown(TYPE1, mission_run(tmp_path), list(marks or [Mark(ns(10.0), "I")]), LIMIT_ROWS)
 
 
-def test_culprit_without_a_score_is_a_failure(tmp_path):
-    mission = flown(TYPE1, mission_run(tmp_path), [Mark(ns(10.0), "I")], other_rows(2))
-    assert failures(mission) == ["low: limit is nowhere at the mark 10.0 s"]
+def test_without_good_runs_the_culprit_has_to_be_among_the_first_three(tmp_path):
+    shares = [("~a", 0.4), ("~b", 0.2), ("~limit", 0.1), ("~c", 0.05)]
+    assert not_named(marked(tmp_path), diagnosis(*shares)) == []
+    shares[2], shares[3] = shares[3], shares[2]
+    assert not_named(marked(tmp_path), diagnosis(*shares)) == [
+        "low: limit is not named, but not sure:"
+        " ~a is likeliest (40 %); none of the parameters: 25 %"
+    ]
 
 
-def test_marks_of_the_wrong_type_are_not_judged(tmp_path):
-    # At 30 s the limit has no type II score, for it was not evaluated in the 12 s before.
-    marks = [Mark(ns(10.0), "I"), Mark(ns(30.0), "II")]
-    mission = flown(TYPE1, mission_run(tmp_path), marks, LIMIT_ROWS)
-    assert len(mission.judged) == 1
-    assert failures(mission) == []
+def test_beside_good_runs_the_culprit_has_to_be_blamed(tmp_path):
+    assert not_named(marked(tmp_path), diagnosis(("~limit", 0.6), good=NO_DIFFERENCES)) == []
+    for shares in ([("~limit", 0.4), ("~a", 0.3)], [("~a", 0.6), ("~limit", 0.3)], []):
+        assert not_named(marked(tmp_path), diagnosis(*shares, good=NO_DIFFERENCES)) != []
+
+
+def test_where_no_mark_has_the_right_type_nothing_can_be_named(tmp_path):
+    # That the observer set none is a failure of the mission.
+    mission = marked(tmp_path, Mark(ns(30.0), "II"))
+    assert mission.judged == []
+    assert not_named(mission, diagnosis()) == []
+    assert gone_wrong(mission) == ["low: the observer set no mark of type I"]
 
 
 def test_a_mission_that_did_not_go_as_demanded_is_a_failure(tmp_path):
-    assert failures(flown(TYPE1, mission_run(tmp_path), [], LIMIT_ROWS)) == [
+    assert gone_wrong(flown(TYPE1, mission_run(tmp_path), [], LIMIT_ROWS)) == [
         "low: the observer set no mark of type I"
     ]
     late = mission_run(tmp_path, ended="timeout", messages={}, lost={"/a": 2, "/b": 1})
-    assert failures(flown(CLEAN, late, [Mark(ns(9.5), "I")], LIMIT_ROWS)) == [
+    assert gone_wrong(flown(CLEAN, late, [Mark(ns(9.5), "I")], LIMIT_ROWS)) == [
         "clean: the mission did not end in 10 s",
         "clean: the observer set 1 marks",
         "clean: no picture was taken",
         "clean: 3 log messages were lost by the recorder",
     ]
     type2 = replace(TYPE1, name="high", type="type2")
-    assert failures(flown(type2, mission_run(tmp_path), [Mark(ns(9.5), "II")], LIMIT_ROWS)) == [
+    assert gone_wrong(flown(type2, mission_run(tmp_path), [Mark(ns(9.5), "II")], LIMIT_ROWS)) == [
         "high: a picture was taken"
     ]
 
@@ -218,12 +231,12 @@ def test_a_filled_vial_is_a_failure_under_each_treatment_that_changes_something(
     filled = mission_run(tmp_path, messages={"/truth/vial_filled": 1})
     empty = mission_run(tmp_path, messages={"/camera/picture": 1})
     mark = [Mark(ns(10.0), "I")]
-    assert failures(flown(TYPE1, filled, mark, LIMIT_ROWS, WATER_SAMPLER)) == [
+    assert gone_wrong(flown(TYPE1, filled, mark, LIMIT_ROWS, WATER_SAMPLER)) == [
         "low: the vial was filled"
     ]
-    assert failures(flown(TYPE1, empty, mark, LIMIT_ROWS, WATER_SAMPLER)) == []
-    assert failures(flown(CLEAN, filled, [], LIMIT_ROWS, WATER_SAMPLER)) == []
-    assert failures(flown(CLEAN, empty, [], LIMIT_ROWS, WATER_SAMPLER)) == [
+    assert gone_wrong(flown(TYPE1, empty, mark, LIMIT_ROWS, WATER_SAMPLER)) == []
+    assert gone_wrong(flown(CLEAN, filled, [], LIMIT_ROWS, WATER_SAMPLER)) == []
+    assert gone_wrong(flown(CLEAN, empty, [], LIMIT_ROWS, WATER_SAMPLER)) == [
         "clean: the vial was not filled"
     ]
 

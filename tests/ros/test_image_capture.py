@@ -24,7 +24,7 @@ from pytpc.ros.left_processes import GRAPH_WORD
 from pytpc.ros.mission_run import MISSION_DONE, Progress, RecordOptions
 from pytpc.ros.ros1.graph import RosGraph
 from pytpc.ros.ros1.record_mission import run_mission
-from pytpc_evaluation.demo.demo import FIRST, TreatedMission, failures, run_treatment
+from pytpc_evaluation.demo.demo import FIRST, TreatedMission, gone_wrong, run_treatment
 from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE
 
 PACKAGE = Path(__file__).parents[2] / "examples/image_capture"
@@ -98,7 +98,7 @@ def test_most_comparisons_name_the_topic_that_they_reach(built):
 
 def test_clean_mission_gets_no_mark_and_loses_no_report(built, env, tmp_path):
     mission = fly("clean", 1, built, env, tmp_path)
-    assert failures(mission) == []
+    assert gone_wrong(mission) == []
     run, recording = mission.run, mission.recording
     assert run.messages["/camera/picture"] == 1
     assert 40.0 < run.sim_s < 90.0
@@ -134,7 +134,7 @@ def test_changed_parameter_is_among_the_first_suspects(
 ):
     kind, pictures = kind_and_pictures
     mission = fly(treatment, 1, built, env, tmp_path)
-    assert failures(mission) == []
+    assert gone_wrong(mission) == []
     assert mission.run.messages.get("/camera/picture", 0) == pictures
     assert mission.judged
     for ranking in mission.judged:

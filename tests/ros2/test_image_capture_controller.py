@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from patience import PATIENCE_S
-from pytpc_evaluation.demo.demo import failures
+from pytpc_evaluation.demo.demo import gone_wrong
 from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE_ROS2
 from pytpc_evaluation.demo.ros2_controller import NODE, PACKAGE, has_rclcpp, with_controller
 from pytpc_evaluation.demo.ros2_missions import run_ros2_treatment
@@ -52,7 +52,7 @@ def test_it_flies_the_mission_and_reports_under_its_name(
         rate=100.0,
         timeout_s=PATIENCE_S,
     )
-    assert failures(mission) == []
+    assert gone_wrong(mission) == []
     events = mission.recording.events
     assert set(events.nodes) == {f"/{name}" for name in robot.programs}
     names = {one.name for one in mission.recording.names}

@@ -1,8 +1,8 @@
 """The study in small: treated missions are run, recorded and ranked, and the result is judged.
 
-The observer in these missions sees only what the robot does. Whether the parameter that the
-treatment changed is named among the first suspects is the question; a mission that did not go as
-its treatment demands answers nothing, and is a failure of its own.
+The observer in these missions sees only what the robot does. Whether the diagnosis names the
+parameter that the treatment changed is the question; a mission that did not go as its treatment
+demands answers nothing, and is a failure of its own.
 """
 
 from __future__ import annotations
@@ -29,13 +29,14 @@ from pytpc.recording.marks import Mark
 from pytpc.recording.mission import EVENTS_FILE, MARKS_FILE, Recording, save_recording
 from pytpc.ros.mission_run import MISSION_DONE, MissionRun, Progress, RecordOptions
 from pytpc.ros.ros1.record_mission import run_mission
+from pytpc.static.parameters import same_parameter
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.origins import read_origins
 from pytpc_evaluation.demo.demo_examples import Example
 from pytpc_evaluation.treatment import Treatment, save_treatment
 
 FIRST = 3
-"""The changed parameter has to be among so many first suspects."""
+"""Without good runs, the changed parameter has to be among so many first suspects."""
 
 
 @dataclass(frozen=True)
@@ -161,11 +162,6 @@ def treated(
     return TreatedMission(example, treatment, seed, run, recording, rankings)
 
 
-def failures(mission: TreatedMission) -> list[str]:
-    """What is wrong with a mission or its ranking, in sentences; empty where nothing is."""
-    return [*gone_wrong(mission), *_not_named(mission)]
-
-
 def gone_wrong(mission: TreatedMission) -> list[str]:
     """Where a mission did not go as its treatment demands, in sentences."""
     example, treatment, run = mission.example, mission.treatment, mission.run
@@ -187,20 +183,21 @@ def gone_wrong(mission: TreatedMission) -> list[str]:
     return found
 
 
-def _not_named(mission: TreatedMission) -> list[str]:
+def not_named(mission: TreatedMission, diagnosis: Diagnosis) -> list[str]:
+    """A sentence where the changed parameter is not named; empty where it is, or nothing changed.
+
+    Beside good runs it has to be the one that is blamed, without them one of the first suspects.
+    """
     parameter = mission.treatment.parameter
-    if parameter is None:
+    if parameter is None or not mission.judged:
         return []
-    found = []
-    for ranking in mission.judged:
-        position = ranking.position_of(parameter)
-        if position is None or position > FIRST:
-            where = "nowhere" if position is None else f"at position {position}"
-            found.append(
-                f"{mission.treatment.name}: {parameter} is {where} at the mark"
-                f" {_seconds(mission, ranking.mark):.1f} s"
-            )
-    return found
+    if diagnosis.differences is not None:
+        named = [] if diagnosis.accused is None else [diagnosis.accused]
+    else:
+        named = [one.parameter for one in diagnosis.blame.suspects[:FIRST]]
+    if any(same_parameter(parameter, name) for name in named):
+        return []
+    return [f"{mission.treatment.name}: {parameter} is not named, but {diagnosis.headline}"]
 
 
 def result_table(missions: Sequence[TreatedMission], static_info: StaticInfo) -> Table:

@@ -29,7 +29,13 @@ from pytpc.ros.mission_run import Progress
 from pytpc.ros.node_start import mission_env
 from pytpc.static.static_info import StaticInfo
 from pytpc.workspace.colcon import BuildError
-from pytpc_evaluation.demo.demo import TreatedMission, failures, result_table, run_treatment
+from pytpc_evaluation.demo.demo import (
+    TreatedMission,
+    gone_wrong,
+    not_named,
+    result_table,
+    run_treatment,
+)
 from pytpc_evaluation.demo.demo_examples import Example, link_package
 from pytpc_evaluation.treatment import Treatment
 
@@ -155,15 +161,19 @@ def run_demo(
         reports = [mission.report(robot.static, good) for mission in missions]
         title = f"{example.title}: suspected parameters"
         write_missions(page, reports, title=title, on_progress=advance)
+    wrong = []
     for mission in missions:
+        wrong += gone_wrong(mission)
         if mission.rankings:
+            diagnosis = mission.diagnosis(robot.static, good)
+            wrong += not_named(mission, diagnosis)
             console.print(f"\n=> What pytpc says of {mission.treatment.name}", style="bold")
-            print_diagnosis(console, mission.diagnosis(robot.static, good))
+            print_diagnosis(console, diagnosis)
             console.print(f"   In truth: {mission.treatment.change or 'nothing was changed'}")
     console.print()
     console.print(result_table(missions, robot.static), highlight=False)
     console.print(f"Report: {page}", highlight=False, soft_wrap=True)
-    return [sentence for mission in missions for sentence in failures(mission)]
+    return wrong
 
 
 def can_be_named(treatment: Treatment, static: StaticInfo) -> bool:
