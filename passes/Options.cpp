@@ -133,14 +133,15 @@ static bool isBelow(StringRef Path, StringRef Folder) {
 /// True if \p Path is a header that is installed beside those of ROS itself:
 /// ROS may be in any folder, such as an environment of conda or of Python.
 static bool isInstalledWithRos(StringRef Path) {
-  size_t Include = Path.rfind("/include/");
-  if (Include == StringRef::npos)
-    return false;
-  const std::string Prefix = Path.take_front(Include).str();
-  return any_of(ArrayRef<StringRef>{"rclcpp/rclcpp/rclcpp.hpp", "ros/ros.h"},
-                [&](StringRef Header) {
-                  return sys::fs::exists(Prefix + "/include/" + Header);
-                });
+  static constexpr StringLiteral Include = "/include/";
+  for (size_t At = Path.find(Include); At != StringRef::npos;
+       At = Path.find(Include, At + 1)) {
+    const std::string Folder = Path.take_front(At + Include.size()).str();
+    if (sys::fs::exists(Folder + "rclcpp/rclcpp/rclcpp.hpp") ||
+        sys::fs::exists(Folder + "ros/ros.h"))
+      return true;
+  }
+  return false;
 }
 
 bool Options::isUserSource(StringRef Path) const {

@@ -20,7 +20,7 @@ bool isOfOneCall(const Value *Pointer, ArrayRef<CallBase *> Calls,
       continue;
     Locations Own =
         Pointers.resolve(Call->getArgOperand(Object->getArgNo()), false);
-    if (Own.empty())
+    if (Own.empty() || is_contained(Passed, Own))
       continue;
     if (any_of(Passed, [&](const Locations &Other) {
           return none_of(Other, [&](const Location &A) {

@@ -245,12 +245,21 @@ bool Follower::followHeld(const State &S, Instruction &I) {
               *Rest = argument(*Call, *Row, Row->Rest);
   if (Number != S.V && Rest != S.V)
     return false;
+  const bool IsRest = Number != S.V;
+  const Value *Other = IsRest ? Number : Rest;
+  std::optional<double> Constant = 0;
+  if (Other)
+    Constant = constantNumber(Other);
+  // Nanoseconds beside seconds that are not known say nothing about the whole;
+  // seconds do.
+  if (IsRest && !Constant) {
+    stopAt(ValueEnd::Mixed, &I);
+    return true;
+  }
   Transform How = withoutNarrowing(S.How);
-  How.divide(Number == S.V ? Row->PerSecond : NanosecondsPerSecond);
-  // The other one of the two, if it is constant.
-  if (const Value *Other = Number == S.V ? Rest : Number)
-    How.add(constantNumber(Other).value_or(0) /
-            (Number == S.V ? NanosecondsPerSecond : Row->PerSecond));
+  How.divide(IsRest ? NanosecondsPerSecond : Row->PerSecond);
+  How.add(Constant.value_or(0) /
+          (IsRest ? Row->PerSecond : NanosecondsPerSecond));
   for (CallBase *Out : Texts.numbersFrom(*Call, *Row)) {
     Transform Taken = How;
     if (const Rule *Taking = Rules.match(*Out))

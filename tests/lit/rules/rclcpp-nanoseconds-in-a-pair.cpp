@@ -14,7 +14,7 @@ public:
     Out = create_publisher<std_msgs::msg::Number>("out", 1);
   }
   // CHECK: comparisons of {{.*}}: 4
-  void step(const rclcpp::Duration &Age) {
+  void step(const rclcpp::Duration &Age, int Unknown) {
     std_msgs::msg::Number M;
     // 1e6 / 1e9 of the milliseconds.
     // CHECK-DAG: derived 'a' relation < as 0.001 * x distance 1 {{.*}} at [[#@LINE+1]]:13
@@ -29,6 +29,9 @@ public:
     // CHECK-DAG: derived 'b' relation < as x + 0.5 distance 1 {{.*}} at [[#@LINE+1]]:13
     if (Age < rclcpp::Duration(Seconds, 500000000))
       Out->publish(M);
+    // The nanoseconds alone are no threshold.
+    if (Age < rclcpp::Duration(Unknown, Milliseconds * 1000000))
+      Out->publish(M);
   }
 
 private:
@@ -36,4 +39,6 @@ private:
   int Milliseconds, Seconds;
 };
 
-void run(const rclcpp::Duration &Age) { Node().step(Age); }
+void run(const rclcpp::Duration &Age, int Unknown) {
+  Node().step(Age, Unknown);
+}
