@@ -7,6 +7,7 @@
 
 #include "params/Idioms.h"
 #include "support/Budget.h"
+#include "support/Compat.h"
 
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/Support/CommandLine.h"
@@ -79,6 +80,63 @@ Transform throughChoice(Transform How, const Instruction &I) {
   return How;
 }
 
+/// True if \p A and \p B, of one idiom, point to the same variable: to the
+/// same ones, if an object is one of several.
+bool Follower::isOneVariable(const Value *A, const Value *B) const {
+  if (isSameVariable(A, B))
+    return true;
+  Locations OfA = Pointers.resolve(A, true), OfB = Pointers.resolve(B, true);
+  return !OfA.empty() && OfA.size() == OfB.size() &&
+         all_of(OfA, [&](const Location &L) { return is_contained(OfB, L); });
+}
+
+/// True if \p A and \p B are the same local variable of the source.
+static bool isSameLocal(const Instruction &A, const Value &B) {
+  auto Records = variableRecords(const_cast<Value *>(&B));
+  return any_of(variableRecords(const_cast<Instruction *>(&A)),
+                [&](const DbgVariableRecord *R) {
+                  return any_of(Records, [&](const DbgVariableRecord *Other) {
+                    return R->getVariable() == Other->getVariable();
+                  });
+                });
+}
+
+/// True if \p Merge takes the smaller or larger of the followed value, for
+/// which \p IsOwn holds, and of a measured variable that it is then stored to,
+/// as in `x = std::min(x, limit)`: what that is compared with later is not
+/// compared with the limit.
+bool Follower::limitsVariable(const Instruction &Merge,
+                              function_ref<bool(const Value *)> IsOwn) {
+  if (IsOutcome)
+    return false;
+  auto IsVariable = [&](const Limited &L) {
+    if (isSameLocal(Merge, *L.Compared))
+      return true;
+    const auto *Load = dyn_cast<LoadInst>(stripCasts(L.Compared));
+    const Value *Of = L.Side->getType()->isPointerTy() ? L.Side
+                      : Load ? Load->getPointerOperand()
+                             : nullptr;
+    return Of && !Merge.use_empty() &&
+           all_of(Merge.users(), [&](const User *U) {
+             const auto *Store = dyn_cast<StoreInst>(U);
+             return Store && isOneVariable(Store->getPointerOperand(), Of);
+           });
+  };
+  return any_of(limitedBy(Merge), [&](const Limited &L) {
+    return !IsOwn(L.Side) && IsVariable(L) && !Configuration.has(L.Compared);
+  });
+}
+
+/// The same by hand: `if (x > limit) x = limit`.
+bool Follower::limitsVariable(const StoreInst &Store) {
+  const Value *Compared = IsOutcome ? nullptr : limitedBy(Store);
+  const auto *Load =
+      Compared ? dyn_cast<LoadInst>(stripCasts(Compared)) : nullptr;
+  return Load &&
+         isOneVariable(Load->getPointerOperand(), Store.getPointerOperand()) &&
+         !Configuration.has(Load);
+}
+
 /// If a store may write to more variables than this, the points-to analysis has
 /// lost track; comparisons found behind it are reported as doubtful.
 static cl::opt<unsigned> MaxTargets(
@@ -112,6 +170,8 @@ bool Follower::keepsFormula(const Stored &To) const {
 
 /// The value goes on to the loads of the variable that it is stored to.
 void Follower::store(const State &S, StoreInst &Store) {
+  if (limitsVariable(Store))
+    return;
   const Stored &To = describeStore(Store);
   if (S.How.Variables && (isMovedOn(Store) || !keepsFormula(To)))
     return stopAt(ValueEnd::Mixed, &Store);
@@ -153,10 +213,18 @@ void Follower::load(const State &S, Instruction &Write,
           std::make_unique<SmallVector<ScalarPart, 1>>(Pointers.partsOf(*Load));
     ArrayRef<ScalarPart> Read = *Known;
     // One of several values, such as the result of std::min, is no formula.
-    if (S.How.Variables && Read.size() > 1) {
+    if (isMeasured(S.How) && Read.size() > 1) {
       stopAt(ValueEnd::Mixed, Load);
       continue;
     }
+    if (Read.size() > 1 && limitsVariable(*Load, [&](const Value *Side) {
+          return any_of(Pointers.resolve(Side, true), [&](const Location &L) {
+            return any_of(Written, [&](const ScalarPart &From) {
+              return Accesses.reaches(From.Where, L);
+            });
+          });
+        }))
+      continue;
     bool IsWide = any_of(Read, [](const ScalarPart &P) { return P.Size; });
     if (!WasWide && !IsWide) {
       Next.In = S.In;
@@ -217,8 +285,8 @@ bool Follower::carry(const State &S, Use &U) {
   auto *I = cast<Instruction>(U.getUser());
   // A formula belongs to the function that computes it: what it hands on or
   // returns, or merges with other values, is data.
-  if (S.How.Variables && (isa<PHINode, SelectInst, ReturnInst>(I) ||
-                          (isa<CallBase>(I) && !isCopy(*I, U))))
+  if (isMeasured(S.How) && (isa<PHINode, SelectInst, ReturnInst>(I) ||
+                            (isa<CallBase>(I) && !isCopy(*I, U))))
     return false;
   if (isa<CastInst>(I) || isa<FreezeInst>(I) || isCopy(*I, U)) {
     push({I, S.How, S.Path, S.Direct, S.In, S.Origin});

@@ -6,6 +6,7 @@
 #include "calls/SimpleCallGraph.h"
 #include "memory/Variables.h"
 #include "memory/VisibleWrites.h"
+#include "params/Configured.h"
 #include "params/ParamCallFinder.h"
 #include "params/ParamUsageFinder.h"
 #include "params/Registers.h"
@@ -38,7 +39,8 @@ public:
         Reads(AM.getResult<ParamCallFinder>(M)),
         Rules(AM.getResult<RuleAnalysis>(M)),
         Names(AM.getResult<LocationTypesAnalysis>(M)),
-        Texts(M, Pointers, Accesses, Writes, Rules) {}
+        Texts(M, Pointers, Accesses, Writes, Rules),
+        Configuration(Reads, Calls, Pointers, Writes) {}
 
   ParameterUsage run();
 
@@ -103,6 +105,10 @@ private:
                                                const CallPath *Path);
   bool keepsFormula(const Stored &To) const;
   bool followHeld(const State &S, llvm::Instruction &I);
+  bool isOneVariable(const llvm::Value *A, const llvm::Value *B) const;
+  bool limitsVariable(const llvm::Instruction &Merge,
+                      llvm::function_ref<bool(const llvm::Value *)> IsOwn);
+  bool limitsVariable(const llvm::StoreInst &Store);
   bool followRepacked(const State &S, llvm::Use &U);
   bool carry(const State &S, llvm::Use &U);
   void load(const State &S, llvm::Instruction &Write,
@@ -132,6 +138,7 @@ private:
   const RuleMatches &Rules;
   const VariableNames Names;
   const TextUsage Texts;
+  Configured Configuration;
 
   // Very many values may reach one place.
   llvm::DenseMap<const llvm::StoreInst *, std::unique_ptr<Stored>> Stores;

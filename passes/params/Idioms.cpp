@@ -117,6 +117,9 @@ struct Side {
 struct Merged {
   const CmpInst *Compare;
   Side True, False;
+  // If it takes the smaller or the larger of the two:
+  bool Largest = false;
+  bool Swapped = false; ///< the first operand of Compare is False
 };
 
 } // namespace
@@ -215,24 +218,25 @@ static std::optional<Merged> mergedBy(const Instruction &I, bool Pointed) {
                 {Phi->getIncomingValue(1 - True), Pointed}};
 }
 
-std::optional<Choice> choiceOf(const Instruction &Merge) {
+/// The merge that \p Merge is, or is loaded through, if it takes the smaller or
+/// the larger of two values.
+static std::optional<Merged> orderedMerge(const Instruction &Merge) {
   const auto *Load = dyn_cast<LoadInst>(&Merge);
   const auto *Merging =
       Load ? dyn_cast<Instruction>(Load->getPointerOperand()) : &Merge;
   if (!Merging || Merging->getType()->isPointerTy() != (Load != nullptr))
     return std::nullopt;
-  auto M = mergedBy(*Merging, Load != nullptr);
+  std::optional<Merged> M = mergedBy(*Merging, Load != nullptr);
   if (!M)
-    return std::nullopt;
-  auto IfTrue = constantOf(M->True), IfFalse = constantOf(M->False);
-  if (IfTrue.has_value() == IfFalse.has_value())
     return std::nullopt;
   const Value *L = M->Compare->getOperand(0), *R = M->Compare->getOperand(1);
   CmpInst::Predicate P = M->Compare->getPredicate();
-  if (isSide(L, M->False) && isSide(R, M->True))
+  if (isSide(L, M->False) && isSide(R, M->True)) {
     P = CmpInst::getSwappedPredicate(P);
-  else if (!isSide(L, M->True) || !isSide(R, M->False))
+    M->Swapped = true;
+  } else if (!isSide(L, M->True) || !isSide(R, M->False)) {
     return std::nullopt;
+  }
   // The first value is chosen if it is less, or if it is greater.
   switch (P) {
   case CmpInst::ICMP_SLT:
@@ -241,35 +245,91 @@ std::optional<Choice> choiceOf(const Instruction &Merge) {
   case CmpInst::ICMP_ULE:
   case CmpInst::FCMP_OLT:
   case CmpInst::FCMP_OLE:
-    return Choice{false, IfTrue ? *IfTrue : *IfFalse};
+    return M;
   case CmpInst::ICMP_SGT:
   case CmpInst::ICMP_SGE:
   case CmpInst::ICMP_UGT:
   case CmpInst::ICMP_UGE:
   case CmpInst::FCMP_OGT:
   case CmpInst::FCMP_OGE:
-    return Choice{true, IfTrue ? *IfTrue : *IfFalse};
+    M->Largest = true;
+    return M;
   default:
     return std::nullopt;
   }
 }
 
+std::optional<Choice> choiceOf(const Instruction &Merge) {
+  std::optional<Merged> M = orderedMerge(Merge);
+  if (!M)
+    return std::nullopt;
+  auto IfTrue = constantOf(M->True), IfFalse = constantOf(M->False);
+  if (IfTrue.has_value() == IfFalse.has_value())
+    return std::nullopt;
+  return Choice{M->Largest, IfTrue ? *IfTrue : *IfFalse};
+}
+
+/// Adds the values of which \p M takes one. A value that is reached by a
+/// pointer may be the smaller or larger of others.
+static void addLimited(const Merged &M, SmallVectorImpl<Limited> &Out) {
+  for (bool IsTrue : {true, false}) {
+    const Side &S = IsTrue ? M.True : M.False;
+    const Value *Compared = M.Compare->getOperand(IsTrue == M.Swapped ? 1 : 0);
+    const auto *Load = dyn_cast<LoadInst>(Compared);
+    std::optional<Merged> Inner =
+        S.Pointed && Load && Load->getPointerOperand() == S.V
+            ? orderedMerge(*Load)
+            : std::nullopt;
+    if (Inner)
+      addLimited(*Inner, Out);
+    else
+      Out.push_back({S.V, Compared});
+  }
+}
+
+SmallVector<Limited, 3> limitedBy(const Instruction &Merge) {
+  SmallVector<Limited, 3> Found;
+  if (std::optional<Merged> M = orderedMerge(Merge))
+    addLimited(*M, Found);
+  return Found;
+}
+
 /// True if \p A and \p B are computed in the same way from the same variables,
-/// which no sensible program changes in between.
-static bool isSameValue(const Value *A, const Value *B, unsigned Depth = 0) {
+/// which no sensible program changes in between: in one block, or \p Across the
+/// blocks of an idiom.
+static bool isSameValue(const Value *A, const Value *B, bool Across = false,
+                        unsigned Depth = 0) {
   if (A == B)
     return true;
   const auto *I = dyn_cast<Instruction>(A), *J = dyn_cast<Instruction>(B);
-  if (!I || !J || Depth == 4 || I->getParent() != J->getParent() ||
+  if (!I || !J || Depth == 4 || (!Across && I->getParent() != J->getParent()) ||
       !I->isSameOperationAs(J))
     return false;
   if (const auto *Load = dyn_cast<LoadInst>(I))
     return isSameVariable(Load->getPointerOperand(),
                           cast<LoadInst>(J)->getPointerOperand());
-  return (isa<BinaryOperator>(I) || isa<CastInst>(I)) &&
+  return (isa<BinaryOperator>(I) || isa<CastInst>(I) ||
+          isa<UnaryOperator>(I)) &&
          all_of(zip(I->operands(), J->operands()), [&](auto Pair) {
-           return isSameValue(std::get<0>(Pair), std::get<1>(Pair), Depth + 1);
+           return isSameValue(std::get<0>(Pair), std::get<1>(Pair), Across,
+                              Depth + 1);
          });
+}
+
+const Value *limitedBy(const StoreInst &Store) {
+  const BasicBlock *Before = Store.getParent()->getSinglePredecessor();
+  const auto *Br =
+      Before ? dyn_cast<BranchInst>(Before->getTerminator()) : nullptr;
+  const auto *Compare = Br && Br->isConditional()
+                            ? dyn_cast<CmpInst>(Br->getCondition())
+                            : nullptr;
+  if (!Compare || Compare->isEquality())
+    return nullptr;
+  for (unsigned N : {0, 1})
+    if (isSameValue(Compare->getOperand(N), Store.getValueOperand(),
+                    /*Across=*/true))
+      return Compare->getOperand(1 - N);
+  return nullptr;
 }
 
 int squareOf(const Instruction &I) {

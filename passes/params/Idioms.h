@@ -9,6 +9,7 @@
 #ifndef TPC_IDIOMS_H
 #define TPC_IDIOMS_H
 
+#include "llvm/ADT/SmallVector.h"
 #include "llvm/IR/Instructions.h"
 
 #include <optional>
@@ -23,6 +24,19 @@ struct Choice {
 /// How \p Merge (a phi, a select, or a load through a pointer that is one)
 /// chooses between a constant and another value; none if it does not.
 std::optional<Choice> choiceOf(const llvm::Instruction &Merge);
+
+/// One of the values of which the smallest or largest is taken.
+struct Limited {
+  const llvm::Value *Side;     ///< the value, or the pointer that leads to it
+  const llvm::Value *Compared; ///< the value, as it is compared
+};
+
+/// The values of which \p Merge (see choiceOf) takes the smaller or the larger,
+/// all of them if it is a clamp; empty if it does something else.
+llvm::SmallVector<Limited, 3> limitedBy(const llvm::Instruction &Merge);
+/// The same by hand: the value with which what \p Store stores was compared, if
+/// it is only stored if it is smaller, or larger; null if that is not so.
+const llvm::Value *limitedBy(const llvm::StoreInst &Store);
 
 /// True if \p A and \p B point to the same variable of the same object, judged
 /// by how they are computed. A pointer that is read twice counts as the same

@@ -301,12 +301,20 @@ void Follower::followUse(const State &S, Use &U, unsigned Read) {
     return push({I, applyCast(S.How, *Cast), S.Path, S.Direct, S.In, S.Origin});
   if (choiceOf(*I))
     return push({I, throughChoice(S.How, *I), S.Path, S.Direct});
+  if (isa<PHINode, SelectInst>(I) &&
+      limitsVariable(*I, [&](const Value *Side) { return Side == U.get(); }))
+    return;
   if (followHeld(S, *I))
     return;
   if (carry(S, U))
     return;
   auto Name = [&](const Value *V) { return Names.nameOf(V, Pointers); };
   std::optional<Transform> T = apply(S.How, *I, S.V, squareOf(*I), Name);
+  if (T && T->Variables > S.How.Variables)
+    T->Measured |= any_of(I->operands(), [&](const Use &Other) {
+      return Other.get() != S.V && !isa<Function>(Other) &&
+             !Configuration.has(Other);
+    });
   bool Accumulates =
       T && T->Variables && any_of(I->operands(), [&](const Use &Other) {
         return Other.get() != S.V && isComputedFrom(Other, I);
@@ -409,8 +417,14 @@ void Follower::followList(unsigned N) {
   SeenOrigins.clear();
   // Nothing but the read fills an object that a method takes out of it.
   const Instruction *Filled = Read.Values.empty() ? Read.Call : nullptr;
+  auto IsElement = [&](const Value *Side) {
+    return any_of(Pointers.resolve(Side, true), [&](const Location &L) {
+      return any_of(Elements, [&](const Location &E) { return E.mayBe(L); });
+    });
+  };
   for (LoadInst *Load : Writes.elementsFrom(Filled, Elements))
-    push({Load, How, nullptr, true}, Read.Call);
+    if (!limitsVariable(*Load, IsElement))
+      push({Load, How, nullptr, true}, Read.Call);
   for (const TextUsage::Property *P : Texts.propertiesOf(Elements)) {
     How.Part = P->Row->Relation;
     for (Value *V : valuesOf(*P->Call))

@@ -59,6 +59,7 @@ void Transform::add(double Term) {
 void Transform::call(StringRef Op, std::optional<double> Constant, bool First) {
   Transform Outer;
   Outer.Variables = Variables;
+  Outer.Measured = Measured;
   Outer.Merged = Merged;
   Outer.Part = Part;
   Outer.Inner = std::make_shared<const Application>(
@@ -69,6 +70,7 @@ void Transform::call(StringRef Op, std::optional<double> Constant, bool First) {
 void Transform::combine(StringRef Op, std::string Name, bool First) {
   Transform Outer;
   Outer.Variables = Variables + 1;
+  Outer.Measured = Measured;
   Outer.Part = Part;
   Outer.Inner = std::make_shared<const Application>(Application{
       Op.str(), std::move(*this), std::nullopt, First, std::move(Name)});

@@ -35,6 +35,7 @@ struct Transform {
   /// The bits of an integer type that the value is known to fit into; 0: none.
   unsigned Width = 0;
   unsigned Variables = 0; ///< operands that are not constant
+  bool Measured = false;  ///< one of them is not known to be configured
   bool Merged = false; ///< x is one of several values that the program chooses
   /// What of a parameter that is a list or struct is taken: `element`, or what
   /// a row of `properties` calls it; empty for the value itself.
@@ -85,6 +86,10 @@ using NameOf = llvm::function_ref<std::string(const llvm::Value *)>;
 /// with itself, \p Square is 1, or -1 if one factor is negated; otherwise 0.
 std::optional<Transform> apply(Transform T, const llvm::Instruction &I,
                                const llvm::Value *V, int Square, NameOf Name);
+
+/// True if \p T is a formula with values that may be measured. Other formulas
+/// are thresholds as a parameter is.
+inline bool isMeasured(const Transform &T) { return T.Variables && T.Measured; }
 
 /// \p T after \p Cast, which can change the value if the new type is narrower,
 /// or holds integers.

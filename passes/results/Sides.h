@@ -9,8 +9,7 @@
 #ifndef TPC_SIDES_H
 #define TPC_SIDES_H
 
-#include "memory/VisibleWrites.h"
-#include "params/ParamCallFinder.h"
+#include "params/Configured.h"
 #include "params/ParamUsageFinder.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
@@ -37,28 +36,16 @@ public:
                   const llvm::Instruction &Predicate);
 
 private:
-  using Sources = llvm::SmallVector<const llvm::Value *, 8>;
-  bool isConfigured(const llvm::Value *V);
-  bool isWrittenDown(const llvm::Value *V) const;
-  Locations writtenBy(const llvm::Instruction &Write) const;
-  bool addSources(const llvm::Value *V, Sources &Out) const;
-  bool addStored(const llvm::LoadInst &Load, Sources &Out) const;
-  bool isHanded(const llvm::Instruction &Call,
-                llvm::ArrayRef<Location> Variables) const;
   bool isSameParameter(unsigned Read, unsigned Other) const;
   size_t lengthOf(const ParameterComparison &C) const;
 
   const ParameterUsage &Usage;
   const ParamCallFinder::Result &Reads;
-  const CallGraphResult &Calls;
-  PointsTo &Pointers;
-  VisibleWrites &Writes;
-  llvm::SmallPtrSet<const llvm::Value *, 16> Parameters;
+  Configured Values;
   /// The comparisons whose operands both hold the value of a parameter.
   llvm::DenseMap<const llvm::CmpInst *,
                  llvm::SmallVector<const ParameterComparison *, 4>>
       ByCompare;
-  llvm::DenseMap<const llvm::Value *, bool> Known;
 };
 
 } // namespace tpc

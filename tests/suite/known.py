@@ -8,6 +8,7 @@ PYTHON_KNOWN: dict[str, str] = {}
 # The same for those of ROS 2.
 RCLPY_KNOWN: dict[str, str] = {}
 RCLCPP_KNOWN: dict[str, str] = {
+    "cmp_log_only": "a node may be what a container of rclcpp holds, so its publisher may change",
     "val_component": "a message that is changed may be any message of its class",
     "val_overwritten": "a library that gets the node may see the first value",
 }
