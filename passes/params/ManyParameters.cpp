@@ -6,7 +6,9 @@
 #include "params/Texts.h"
 #include "support/Names.h"
 
+#include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/IR/Constants.h"
+#include "llvm/IR/InstIterator.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/Module.h"
 
@@ -115,6 +117,9 @@ static void addMap(CallBase &Call, const Rule &Row, ModuleAnalysisManager &AM,
   const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
   PointsTo &Pointers = AM.getResult<PointsToAnalysis>(M);
   const Value *Map = argument(Call, Row, Row.Value);
+  // A row may say more arguments than this function has.
+  if (!Map || !Map->getType()->isPointerTy())
+    return;
   const std::string Prefix = Known.nameOf(Call, Row);
   const std::string Type = functionArgument(*Call.getCalledFunction());
   Locations Elements;

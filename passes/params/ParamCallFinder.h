@@ -13,6 +13,10 @@
 #include "llvm/ADT/SmallVector.h"
 #include "llvm/Support/JSON.h"
 
+#include <optional>
+#include <string>
+#include <vector>
+
 namespace tpc {
 
 struct ParameterRead {
