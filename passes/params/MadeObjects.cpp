@@ -20,8 +20,15 @@ static bool givesValue(const Function &F) {
 }
 
 void MadeObjects::add(unsigned Read, Value *Made) {
-  MadeObject O{Read, Made, {}, Pointers.resolve(Made, false)};
-  O.Pointers.insert(Made);
+  MadeObject O{Read, Made, {}, {}};
+  auto AddPlace = [&](const Value *Pointer) {
+    O.Pointers.insert(Pointer);
+    if (Reads[Read].Row->Many == Rule::List)
+      Pointers.addElements(Pointer, O.Where);
+    else
+      append_range(O.Where, Pointers.resolve(Pointer, false));
+  };
+  AddPlace(Made);
   for (const User *U : Made->users()) {
     const auto *Assign = dyn_cast<CallBase>(U);
     const Function *F = Assign ? Assign->getCalledFunction() : nullptr;
@@ -29,14 +36,8 @@ void MadeObjects::add(unsigned Read, Value *Made) {
         !givesValue(*F))
       continue;
     const Value *To = Assign->getArgOperand(0);
-    if (!To->getType()->isPointerTy())
-      continue;
-    O.Pointers.insert(To);
-    append_range(O.Where, Pointers.resolve(To, false));
-  }
-  if (Reads[Read].Row->Many == Rule::List) {
-    O.Where.clear();
-    Pointers.addElements(Made, O.Where);
+    if (To->getType()->isPointerTy())
+      AddPlace(To);
   }
   Objects.push_back(std::move(O));
 }
@@ -102,10 +103,12 @@ std::optional<bool> MadeObjects::ends(const CallBase &Call, const Value *Local,
   if (Call.arg_size() == 1)
     return true; // A new object, without a value.
   const Value *Source = objectBehind(Call.getArgOperand(1), Rules);
+  if (!Source)
+    return std::nullopt;
   Numbers From = lastAssigned(Source, Call, Depth + 1);
   // An element of a list is no local.
   SmallVector<unsigned, 2> Listed;
-  if (!From && Source && !isa<AllocaInst>(Source))
+  if (!From && !isa<AllocaInst>(Source))
     Listed = storedAt(Source);
   if (!From && Listed.empty())
     return std::nullopt;
