@@ -64,8 +64,8 @@ private:
 
 } // namespace
 
-static constexpr StringLiteral ReadKeys[] = {"name",   "value",   "default",
-                                             "handle", "resolve", "many"};
+static constexpr StringLiteral ReadKeys[] = {
+    "name", "value", "default", "handle", "resolve", "many", "node"};
 static constexpr StringLiteral ConfigKeys[] = {"handle", "resolve"};
 static constexpr StringLiteral ReadRequired[] = {"name", "value"};
 static constexpr StringLiteral ExposingKeys[] = {"topic"};

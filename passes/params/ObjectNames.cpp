@@ -3,6 +3,7 @@
 
 #include "params/Callbacks.h"
 #include "params/Idioms.h"
+#include "params/OtherNodes.h"
 #include "params/Texts.h"
 
 #include "llvm/ADT/SetVector.h"
@@ -13,13 +14,6 @@ using namespace llvm;
 
 namespace tpc {
 
-/// True if \p Call, described by \p Row, asks for a parameter of another node.
-static bool isOfOtherNode(const CallBase &Call, const Rule &Row, Texts &Known) {
-  const Value *Node = argument(Call, Row, Row.Node);
-  std::string Name = Node ? Known.textAt(Node, Call) : "";
-  return !Name.empty() && !isDynamic(Name);
-}
-
 ObjectNames::ObjectNames(Module &M, ModuleAnalysisManager &AM, Texts &Known)
     : Rules(AM.getResult<RuleAnalysis>(M)),
       Calls(AM.getResult<SimpleCallGraph>(M)), Known(Known),
@@ -27,18 +21,19 @@ ObjectNames::ObjectNames(Module &M, ModuleAnalysisManager &AM, Texts &Known)
   forEachCall(M, Rules, Rule::Identity, [&](CallBase &Call, const Rule &) {
     Identities.push_back(&Call);
   });
+  OtherNodes Others(M, AM, Known);
   forEachCall(M, Rules, Rule::Callback, [&](CallBase &Call, const Rule &Row) {
     if (!Row.Name)
       return;
-    std::string Name = isOfOtherNode(Call, Row, Known)
-                           ? std::string()
-                           : Known.nameOf(Call, Row);
+    std::string Name =
+        Others.have(Call, Row) ? std::string() : Known.nameOf(Call, Row);
     for (unsigned N : Row.Callbacks)
       if (const Value *Argument = argument(Call, Row, N))
         for (const Function *F : calledBackBy(*Argument, Call, Sources)) {
           auto [It, New] = CalledFor.try_emplace(F, Name);
-          if (!New && It->second != Name)
-            It->second = DynamicName;
+          if (New || Name.empty() || It->second == Name)
+            continue;
+          It->second = It->second.empty() ? Name : DynamicName;
         }
   });
 }

@@ -46,8 +46,8 @@ private:
   UserSources Sources;
   /// Calls that return the name of an object.
   llvm::SmallVector<llvm::CallBase *, 0> Identities;
-  /// The parameter whose objects a function is called back with; empty if it is
-  /// one of another node.
+  /// The parameter of this node whose objects a function is called back with;
+  /// empty if all are parameters of other nodes.
   llvm::DenseMap<const llvm::Function *, std::string> CalledFor;
   std::map<const llvm::Function *, llvm::DominatorTree> Trees;
 };
