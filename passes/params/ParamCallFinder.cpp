@@ -100,11 +100,12 @@ ParamCallFinder::Result ParamCallFinder::run(Module &M,
   Texts Known(Rules, AM.getResult<SimpleCallGraph>(M),
               Texts::MemoryView::of(M, AM));
   Result R;
+  ManyParameters Many(M, AM, Known, R);
   OtherNodes Others(M, AM, Known);
   forEachCall(M, Rules, Rule::Read, [&](CallBase &Call, const Rule &Row) {
     const size_t Before = R.size();
     if (Row.Many != Rule::One)
-      addMany(Call, Row, AM, Known, R);
+      Many.add(Call, Row);
     else
       R.push_back(readOf(Call, Row, Known));
     if (Others.have(Call, Row))
