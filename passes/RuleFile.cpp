@@ -64,8 +64,8 @@ private:
 
 } // namespace
 
-static constexpr StringLiteral ReadKeys[] = {"name",   "value",   "default",
-                                             "handle", "resolve", "many"};
+static constexpr StringLiteral ReadKeys[] = {
+    "name", "value", "default", "handle", "resolve", "many", "node"};
 static constexpr StringLiteral ConfigKeys[] = {"handle", "resolve"};
 static constexpr StringLiteral ReadRequired[] = {"name", "value"};
 static constexpr StringLiteral ExposingKeys[] = {"topic"};
@@ -247,10 +247,11 @@ Error Reader::field(StringRef Key, const json::Value &V, StringRef Place,
   if (Key == "nanoseconds")
     return number(V, Place, R.Nanoseconds);
   if (Key == "many") {
-    R.Many = V.getAsString() == "list" ? Rule::List : Rule::Map;
-    return V.getAsString() == "list" || V.getAsString() == "map"
-               ? Error::success()
-               : wrong(Place, "must be \"list\" or \"map\"");
+    std::optional<StringRef> Text = V.getAsString();
+    if (Text != "list" && Text != "map")
+      return wrong(Place, "must be \"list\" or \"map\"");
+    R.Many = Text == "list" ? Rule::List : Rule::Map;
+    return Error::success();
   }
   if (Key == "node")
     return number(V, Place, R.Node);
@@ -277,6 +278,12 @@ Error Reader::meaning(const Rule &R, StringRef Place) {
                  "must be \"this\", \"global\" or \"node\"");
   if (R.Slot.has_value() == R.Symbol.empty())
     return wrong(Place, "must have both \"slot\" and \"symbol\", or neither");
+  if (R.Many == Rule::List && R.Value)
+    return wrong((Place + "/value").str(),
+                 "must be \"return\" where \"many\" is \"list\"");
+  if (R.Many == Rule::Map && !R.Value)
+    return wrong((Place + "/value").str(),
+                 "must be a number where \"many\" is \"map\"");
   // The program reads an integer of 64 bits there.
   if (R.Nanoseconds && *R.Nanoseconds % 8)
     return wrong((Place + "/nanoseconds").str(), "must be a multiple of 8");

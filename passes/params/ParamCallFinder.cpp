@@ -3,6 +3,7 @@
 
 #include "Options.h"
 #include "params/ManyParameters.h"
+#include "params/OtherNodes.h"
 #include "params/ParameterObjects.h"
 #include "params/Texts.h"
 #include "support/Names.h"
@@ -69,6 +70,18 @@ static json::Value defaultOf(const CallBase &Call, const Rule &R,
   return C ? jsonOf(*C, Type) : nullptr;
 }
 
+/// The read of the one parameter that \p Call, described by \p Row, reads.
+static ParameterRead readOf(CallBase &Call, const Rule &Row, Texts &Known) {
+  std::string Type = valueType(*Call.getCalledFunction(), Row);
+  json::Value Default = defaultOf(Call, Row, Type, Known);
+  return {&Call,
+          &Row,
+          Known.nameOf(Call, Row),
+          std::move(Type),
+          std::move(Default),
+          argument(Call, Row, Row.Value)};
+}
+
 static std::string keyOf(const ParameterRead &Read, const Options &Opts) {
   const DILocation *Loc = Read.Call->getDebugLoc();
   if (!Loc)
@@ -87,15 +100,20 @@ ParamCallFinder::Result ParamCallFinder::run(Module &M,
   Texts Known(Rules, AM.getResult<SimpleCallGraph>(M),
               Texts::MemoryView::of(M, AM));
   Result R;
+  ManyParameters Many(M, AM, Known, R);
+  OtherNodes Others(M, AM, Known);
   forEachCall(M, Rules, Rule::Read, [&](CallBase &Call, const Rule &Row) {
+    const size_t Before = R.size();
     if (Row.Many != Rule::One)
-      return addMany(Call, Row, AM, Known, R);
-    std::string Type = valueType(*Call.getCalledFunction(), Row);
-    json::Value Default = defaultOf(Call, Row, Type, Known);
-    R.push_back({&Call, &Row, Known.nameOf(Call, Row), std::move(Type),
-                 std::move(Default), argument(Call, Row, Row.Value)});
+      Many.add(Call, Row);
+    else
+      R.push_back(readOf(Call, Row, Known));
+    if (Others.have(Call, Row))
+      for (ParameterRead &Read : drop_begin(R, Before))
+        Read.IsOfOther = true;
   });
   findAccessors(M, AM, Known, R);
+  erase_if(R, [](const ParameterRead &Read) { return Read.IsOfOther; });
   findConfigs(M, AM, Known, R);
   const Options &Opts = AM.getResult<OptionsAnalysis>(M);
   for (ParameterRead &Read : R)

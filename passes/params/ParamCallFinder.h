@@ -13,6 +13,10 @@
 #include "llvm/ADT/SmallVector.h"
 #include "llvm/Support/JSON.h"
 
+#include <optional>
+#include <string>
+#include <vector>
+
 namespace tpc {
 
 struct ParameterRead {
@@ -33,6 +37,8 @@ struct ParameterRead {
   /// Of an object in a list that the call makes: its place, if the other places
   /// are other parameters.
   std::optional<unsigned> Index = std::nullopt;
+  /// A parameter of another node: no result of the analysis.
+  bool IsOfOther = false;
 };
 
 /// \p C, a number of the C++ type \p Type, as JSON; null if it is not a number.

@@ -102,6 +102,14 @@ def test_the_example_in_the_documentation_is_right(tmp_path: Path) -> None:
             '{"held": [{"function": "f", "relation": "<", "nanoseconds": 12}]}',
             ": /held/0/nanoseconds: ",
         ),
+        (
+            '{"reads": [{"function": "f", "name": 0, "value": "return", "many": "map"}]}',
+            ": /reads/0/value: ",
+        ),
+        (
+            '{"reads": [{"function": "f", "name": 0, "value": 1, "many": "list"}]}',
+            ": /reads/0/value: ",
+        ),
         ('{"handles": [{"function": "f", "parts": [{}], "to": "this"}]}', ": /handles/0/parts/0: "),
         ('{"opaque": [""]}', ": /opaque/0: "),
         ('{"schema": 2}', ": /schema: "),

@@ -28,6 +28,7 @@ template <class A> struct ParameterDescriptor_ {
   std::string description;
 };
 using ParameterDescriptor = ParameterDescriptor_<std::allocator<void>>;
+struct ParameterEvent;
 struct SetParametersResult {
   bool successful = false;
   std::string reason;
@@ -245,6 +246,8 @@ public:
   std::shared_ptr<Clock> get_clock();
   explicit Node(const std::string &Name);
   virtual ~Node();
+  bool by_prefix(const std::string &Prefix,
+                 std::map<std::string, Parameter> &Found) const;
   const ParameterValue &
   declare_parameter(const std::string &Name, const ParameterValue &Default,
                     const rcl_interfaces::msg::ParameterDescriptor &Descriptor =
@@ -283,7 +286,14 @@ public:
   get_parameters(const std::vector<std::string> &Names) const;
   template <typename T>
   bool get_parameters(const std::string &Prefix,
-                      std::map<std::string, T> &Values) const;
+                      std::map<std::string, T> &Values) const {
+    std::map<std::string, Parameter> Found;
+    if (!by_prefix(Prefix, Found))
+      return false;
+    for (const auto &[Key, One] : Found)
+      Values[Key] = static_cast<T>(One.template get_value<T>());
+    return true;
+  }
   template <typename T>
   bool get_parameter_or(const std::string &Name, T &Value,
                         const T &Default) const {
@@ -325,6 +335,13 @@ public:
   add_parameter_callback(const std::string &Name,
                          std::function<void(const Parameter &)> Callback,
                          const std::string &OfNode = "");
+  using Event = rcl_interfaces::msg::ParameterEvent;
+  static bool get_parameter_from_event(const Event &Of, Parameter &Value,
+                                       const std::string &Name,
+                                       const std::string &OfNode = "");
+  static Parameter get_parameter_from_event(const Event &Of,
+                                            const std::string &Name,
+                                            const std::string &OfNode = "");
 };
 
 namespace topic_statistics {
