@@ -13,11 +13,11 @@ from rich.console import Console
 
 from pytpc.api.comparing import RecordedRun, diff_running
 from pytpc.api.diagnosing import AskedMission
+from pytpc.api.graph_feed import GraphFeed
 from pytpc.api.live_diagnosis import LiveDiagnosis, asked_of_graph
 from pytpc.api.live_mission import (
     KINDS,
     Feed,
-    GraphFeed,
     RecordedFeed,
     WatchedMission,
     Watching,

@@ -10,7 +10,8 @@ from mission_samples import comparison, events, key, link_unit, static_info
 from rich.cells import cell_len
 from rich.text import Text
 
-from pytpc.api.live_mission import GraphFeed, RecordedFeed
+from pytpc.api.graph_feed import GraphFeed
+from pytpc.api.live_mission import RecordedFeed
 from pytpc.api.live_reports import Reports
 from pytpc.diagnosis.ranking.watching import BINS, KeptRankings, Watching
 from pytpc.diagnosis.results.live import Look, Seen
