@@ -46,7 +46,10 @@ class GraphFeed:
         self._reports = Reports(self._source.decoders)
         self._items: deque[Item] = deque(maxlen=_MOST_WAITING)
         self._other_clock = 0
-        self._connected = False
+        # Not known before the first look.
+        self._is_there: bool | None = None
+        self._is_heard = False
+        self._first_report_until: float | None = None
         self._gone = f"the ROS master at {master} does not answer"
         if is_ros2(master):
             self._gone = nobody(Ros2Address.parse(master))
@@ -80,9 +83,15 @@ class GraphFeed:
                 self._other_clock += 1
         return self._watching, found
 
+    @property
+    def is_settled(self) -> bool:
+        """Whether reports come, or none came in the time that those who are there may take."""
+        until = self._first_report_until
+        return self._is_heard or (until is not None and time.monotonic() >= until)
+
     def fault(self) -> str:
         """What is wrong with the connection, and what was broken."""
-        words = [] if self._connected else [self._gone]
+        words = [self._gone] if self._is_there is False else []
         words += [self._restarted] if self._restarted else []
         if self._reports.malformed:
             words.append(f"{self._reports.malformed:,} broken")
@@ -108,6 +117,7 @@ class GraphFeed:
                 for source, data in self._source.poll(_POLL_S):
                     self._items += self._reports.read(source, data, time.monotonic())
                 self._items += self._reports.due(time.monotonic())
+                self._is_heard = self._is_heard or bool(self._items)
         finally:
             self._ended.set()
             self._source.close()
@@ -117,9 +127,12 @@ class GraphFeed:
         while True:
             try:
                 self._source.look()
-                self._connected = True
+                self._is_there = True
             except RunError:
-                self._connected = False
+                self._is_there = False
+            if self._first_report_until is None:
+                patience_s = self._source.patience_s if self._is_there else 0.0
+                self._first_report_until = time.monotonic() + patience_s
             if self._ended.wait(_LOOK_S):
                 return
 
