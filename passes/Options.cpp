@@ -5,6 +5,7 @@
 #include "llvm/ADT/StringExtras.h"
 #include "llvm/IR/Function.h"
 #include "llvm/Support/CommandLine.h"
+#include "llvm/Support/FileSystem.h"
 #include "llvm/Support/MemoryBuffer.h"
 #include "llvm/Support/Path.h"
 
@@ -129,6 +130,20 @@ static bool isBelow(StringRef Path, StringRef Folder) {
          (Path.size() == Folder.size() || Path[Folder.size()] == '/');
 }
 
+/// True if \p Path is a header that is installed beside those of ROS itself:
+/// ROS may be in any folder, such as an environment of conda or of Python.
+static bool isInstalledWithRos(StringRef Path) {
+  static constexpr StringLiteral Include = "/include/";
+  for (size_t At = Path.find(Include); At != StringRef::npos;
+       At = Path.find(Include, At + 1)) {
+    const std::string Folder = Path.take_front(At + Include.size()).str();
+    if (sys::fs::exists(Folder + "rclcpp/rclcpp/rclcpp.hpp") ||
+        sys::fs::exists(Folder + "ros/ros.h"))
+      return true;
+  }
+  return false;
+}
+
 bool Options::isUserSource(StringRef Path) const {
   if (Path.empty())
     return false;
@@ -136,6 +151,8 @@ bool Options::isUserSource(StringRef Path) const {
   size_t Own = !SourceRoot.empty() && isBelow(Path, SourceRoot)
                    ? StringRef(SourceRoot).rtrim('/').size()
                    : 0;
+  if (!Own && isInstalledWithRos(Path))
+    return false;
   return none_of(Excluded, [&](const std::string &F) {
     return isBelow(Path, F) && StringRef(F).rtrim('/').size() >= Own;
   });

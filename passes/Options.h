@@ -36,7 +36,7 @@ struct Options {
   Failure InjectLateFailure = Failure::None;
 
   /// True if \p Path (absolute) is user code: it is in no excluded folder, or
-  /// the source root is the longer prefix.
+  /// the source root is the longer prefix, and is not installed with ROS.
   bool isUserSource(llvm::StringRef Path) const;
 
   /// \p Path relative to SourceRoot if it is below it; otherwise \p Path.

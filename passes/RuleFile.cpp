@@ -64,8 +64,8 @@ private:
 
 } // namespace
 
-static constexpr StringLiteral ReadKeys[] = {"name", "value", "default",
-                                             "handle", "resolve"};
+static constexpr StringLiteral ReadKeys[] = {"name",   "value",   "default",
+                                             "handle", "resolve", "many"};
 static constexpr StringLiteral ConfigKeys[] = {"handle", "resolve"};
 static constexpr StringLiteral ReadRequired[] = {"name", "value"};
 static constexpr StringLiteral ExposingKeys[] = {"topic"};
@@ -74,9 +74,10 @@ static constexpr StringLiteral NameKeys[] = {"parts", "to", "absolute"};
 static constexpr StringLiteral NameRequired[] = {"parts", "to"};
 static constexpr StringLiteral TextKeys[] = {"relation"};
 static constexpr StringLiteral HeldKeys[] = {"relation", "value", "per_second",
-                                             "nanoseconds"};
+                                             "nanoseconds", "rest"};
 static constexpr StringLiteral AccessorKeys[] = {"type"};
-static constexpr StringLiteral CallbackKeys[] = {"answer", "callbacks", "name"};
+static constexpr StringLiteral CallbackKeys[] = {"answer", "callbacks", "name",
+                                                 "node"};
 static constexpr StringLiteral CallbackRequired[] = {"callbacks"};
 
 static const Section Sections[] = {
@@ -245,6 +246,16 @@ Error Reader::field(StringRef Key, const json::Value &V, StringRef Place,
     return factor(V, Place, R.PerSecond);
   if (Key == "nanoseconds")
     return number(V, Place, R.Nanoseconds);
+  if (Key == "many") {
+    R.Many = V.getAsString() == "list" ? Rule::List : Rule::Map;
+    return V.getAsString() == "list" || V.getAsString() == "map"
+               ? Error::success()
+               : wrong(Place, "must be \"list\" or \"map\"");
+  }
+  if (Key == "node")
+    return number(V, Place, R.Node);
+  if (Key == "rest")
+    return number(V, Place, R.Rest);
   if (Key == "callbacks")
     return numbers(V, Place, R.Callbacks);
   assert(Key == "parts" && "a key that no section has");

@@ -67,6 +67,9 @@ struct Rule {
   std::optional<unsigned> Value; ///< argument that the value is written to;
                                  ///< unset: the value is the result
   std::optional<unsigned> Default;
+  /// The read is of several parameters: Name is a list of names and the value a
+  /// list of objects, or Name is a prefix and the value a map.
+  enum ManyTy { One, List, Map } Many = One;
   /// The namespace of `this`, a node handle, is put before the name.
   bool Handle = false;
   /// Which handle resolves the name in the running node: `this`, `global`, or
@@ -84,6 +87,8 @@ struct Rule {
   /// For an object that holds a number: how many units of the number of the
   /// call are one of those that are held: 1e9 for nanoseconds.
   double PerSecond = 1;
+  /// For `into`: the argument with nanoseconds that are put in, too.
+  std::optional<unsigned> Rest;
   /// For operators of such objects: where an object has its nanoseconds, an
   /// integer of 64 bits, in bytes; unset: it begins with two integers of 32
   /// bits, seconds and nanoseconds.
@@ -94,6 +99,9 @@ struct Rule {
   /// The arguments that are functions. If Name is set, they are called with an
   /// object that holds this parameter; otherwise what they return is seen.
   std::vector<unsigned> Callbacks;
+  /// The argument that names the node whose parameter Name is; empty or not
+  /// constant for the own node.
+  std::optional<unsigned> Node;
   /// What the name of a class contains to which such a function gets a smart
   /// pointer, and whose contents are seen: the answer of a service. Empty if
   /// there is none.

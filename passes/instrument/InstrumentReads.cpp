@@ -3,6 +3,7 @@
 
 #include "instrument/Instances.h"
 #include "instrument/InstrumentNodes.h"
+#include "params/Texts.h"
 #include "support/Names.h"
 
 #include "llvm/BinaryFormat/Dwarf.h"
@@ -88,6 +89,11 @@ std::optional<NamedRead> planName(const ParameterRead &Read,
     R.Handle = nullptr;
   else if (!R.Handle)
     return std::nullopt;
+  if (Row.Many != Rule::One) {
+    R.Name = nullptr;
+    R.Text = Read.Name;
+    return isDynamic(Read.Name) ? std::nullopt : std::optional(R);
+  }
   const Function *Callee = Call->getCalledFunction();
   const StringRef Mangled =
       Callee ? nameOfOriginal(*Callee) : StringRef(Row.Symbol);

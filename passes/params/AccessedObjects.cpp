@@ -10,6 +10,7 @@
 #include "memory/PointsTo.h"
 #include "params/Callbacks.h"
 #include "params/Idioms.h"
+#include "params/ManyParameters.h"
 #include "params/ParameterObjects.h"
 #include "params/TextUsage.h"
 #include "params/Texts.h"
@@ -40,6 +41,9 @@ struct MadeObject {
 /// The object that \p Read returns; null if it returns the value itself.
 static Value *objectOf(const ParameterRead &Read,
                        const StringSet<> &ObjectClasses) {
+  if (Read.Row->Many == Rule::List)
+    return Read.Call->hasStructRetAttr() ? Read.Call->getArgOperand(0)
+                                         : nullptr;
   if (Read.Target)
     return ObjectClasses.contains(plainType(Read.Type)) ? Read.Target : nullptr;
   if (!Read.Type.empty() && !ObjectClasses.contains(plainType(Read.Type)))
@@ -164,11 +168,20 @@ private:
   SmallVector<MadeObject, 0> Objects;
   /// Calls that return the name of an object, and those that compare texts.
   SmallVector<CallBase *, 0> Identities;
+  /// The parameter whose objects a function is called back with; empty if it is
+  /// one of another node.
   DenseMap<const Function *, std::string> CalledFor;
   std::map<const Function *, DominatorTree> Trees;
 };
 
 } // namespace
+
+/// True if \p Call, described by \p Row, asks for a parameter of another node.
+static bool isOfOtherNode(const CallBase &Call, const Rule &Row, Texts &Known) {
+  const Value *Node = argument(Call, Row, Row.Node);
+  std::string Name = Node ? Known.textAt(Node, Call) : "";
+  return !Name.empty() && !isDynamic(Name);
+}
 
 ObjectFinder::ObjectFinder(Module &M, ModuleAnalysisManager &AM, Texts &Known,
                            std::vector<ParameterRead> &Reads)
@@ -188,7 +201,9 @@ ObjectFinder::ObjectFinder(Module &M, ModuleAnalysisManager &AM, Texts &Known,
   forEachCall(M, Rules, Rule::Callback, [&](CallBase &Call, const Rule &Row) {
     if (!Row.Name)
       return;
-    std::string Name = Known.nameOf(Call, Row);
+    std::string Name = isOfOtherNode(Call, Row, Known)
+                           ? std::string()
+                           : Known.nameOf(Call, Row);
     for (unsigned N : Row.Callbacks)
       if (const Value *Argument = argument(Call, Row, N))
         for (const Function *F : calledBackBy(*Argument, Call, Sources)) {
@@ -203,6 +218,10 @@ void ObjectFinder::makeObjects() {
   for (unsigned N = 0; N < Reads.size(); ++N)
     if (Value *Made = objectOf(Reads[N], Classes)) {
       Objects.push_back(madeBy(N, Made, Pointers));
+      if (Reads[N].Row->Many == Rule::List) {
+        Objects.back().Where.clear();
+        Pointers.addElements(Made, Objects.back().Where);
+      }
       Reads[N].Type = "";
       Reads[N].Target = nullptr;
     }
@@ -337,11 +356,17 @@ ObjectFinder::Numbers ObjectFinder::lastAssigned(const Value *Local,
       return std::nullopt;
     if (Call.arg_size() == 1)
       return true; // A new object, without a value.
-    Numbers From =
-        lastAssigned(objectBehind(Call.getArgOperand(1)), Call, Depth + 1);
-    if (!From)
+    const Value *Source = objectBehind(Call.getArgOperand(1));
+    Numbers From = lastAssigned(Source, Call, Depth + 1);
+    // An element of a list is no local.
+    SmallVector<unsigned, 2> Listed;
+    if (!From && Source && !isa<AllocaInst>(Source))
+      Listed = storedAt(Source);
+    if (!From && Listed.empty())
       return std::nullopt;
-    Found.insert(From->begin(), From->end());
+    if (From)
+      Found.insert(From->begin(), From->end());
+    Found.insert(Listed.begin(), Listed.end());
     return true;
   };
   if (const Instruction *Above = At.getPrevNode())
@@ -380,25 +405,35 @@ bool ObjectFinder::addReturned(const Function &F,
 SmallVector<unsigned, 2> ObjectFinder::storedAt(const Value *Object) {
   SmallVector<unsigned, 2> Found;
   Locations Where = Pointers.resolve(Object, false);
-  for (const MadeObject &O : Objects)
+  std::optional<unsigned> Index = indexOf(Object);
+  for (const MadeObject &O : Objects) {
+    if (Index && Reads[O.Read].Index && Index != Reads[O.Read].Index)
+      continue;
     if (O.Pointers.contains(Object) || any_of(Where, [&](const auto &L) {
           return any_of(O.Where, [&](const auto &P) { return L.mayBe(P); });
         }))
       Found.push_back(O.Read);
+  }
   return Found;
 }
 
 /// The names of the objects that the program's own functions hand to \p Given,
-/// and of those that its function is called back with.
+/// and of those that its function is called back with. None if they are
+/// parameters of other nodes.
 std::set<std::string> ObjectFinder::namesGiven(const Argument &Given) {
   std::set<std::string> Found;
+  bool IsOfOthers = false;
   SmallSetVector<const Argument *, 4> Work;
   Work.insert(&Given);
   for (unsigned N = 0; N < Work.size(); ++N) {
     const Function &F = *Work[N]->getParent();
     const unsigned Number = Work[N]->getArgNo();
-    if (auto Called = CalledFor.find(&F); Called != CalledFor.end())
-      Found.insert(Called->second);
+    if (auto Called = CalledFor.find(&F); Called != CalledFor.end()) {
+      if (Called->second.empty())
+        IsOfOthers = true;
+      else
+        Found.insert(Called->second);
+    }
     for (const CallBase *Call : Calls.callers(&F)) {
       if (!Sources.has(*Call->getFunction()) || Number >= Call->arg_size())
         continue;
@@ -413,7 +448,7 @@ std::set<std::string> ObjectFinder::namesGiven(const Argument &Given) {
         Found.insert(DynamicName);
     }
   }
-  if (Found.empty())
+  if (Found.empty() && !IsOfOthers)
     Found.insert(DynamicName);
   return Found;
 }

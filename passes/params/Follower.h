@@ -90,6 +90,8 @@ private:
   void followUse(const State &S, llvm::Use &U, unsigned Read);
   void addComparison(const State &S, llvm::CmpInst &Compare, unsigned Operand,
                      unsigned Read);
+  bool holdsInOneCall(const State &S, const llvm::Value *Compared,
+                      const llvm::Function &F) const;
   void dropOwnSides(size_t From);
   void addFlag(const State &S, llvm::Value *V, Decision D, unsigned Read,
                bool IsOperand = false);
@@ -100,6 +102,7 @@ private:
   llvm::SmallVector<Decision, 2> followOutcome(llvm::Value *Outcome,
                                                const CallPath *Path);
   bool keepsFormula(const Stored &To) const;
+  bool followHeld(const State &S, llvm::Instruction &I);
   bool followRepacked(const State &S, llvm::Use &U);
   bool carry(const State &S, llvm::Use &U);
   void load(const State &S, llvm::Instruction &Write,

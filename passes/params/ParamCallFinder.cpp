@@ -2,6 +2,7 @@
 #include "params/ParamCallFinder.h"
 
 #include "Options.h"
+#include "params/ManyParameters.h"
 #include "params/ParameterObjects.h"
 #include "params/Texts.h"
 #include "support/Names.h"
@@ -87,6 +88,8 @@ ParamCallFinder::Result ParamCallFinder::run(Module &M,
               Texts::MemoryView::of(M, AM));
   Result R;
   forEachCall(M, Rules, Rule::Read, [&](CallBase &Call, const Rule &Row) {
+    if (Row.Many != Rule::One)
+      return addMany(Call, Row, AM, Known, R);
     std::string Type = valueType(*Call.getCalledFunction(), Row);
     json::Value Default = defaultOf(Call, Row, Type, Known);
     R.push_back({&Call, &Row, Known.nameOf(Call, Row), std::move(Type),

@@ -30,6 +30,9 @@ struct ParameterRead {
   /// Identifies the read where its name is reported; empty without debug
   /// information. Reads of one name at one place share it.
   std::string Key = {};
+  /// Of an object in a list that the call makes: its place, if the other places
+  /// are other parameters.
+  std::optional<unsigned> Index = std::nullopt;
 };
 
 /// \p C, a number of the C++ type \p Type, as JSON; null if it is not a number.

@@ -5,6 +5,7 @@
 #include "control/IfStatements.h"
 #include "params/Follower.h"
 #include "params/Idioms.h"
+#include "params/ObjectsOfCalls.h"
 #include "params/ParamCallFinder.h"
 #include "params/ParameterObjects.h"
 #include "params/Registers.h"
@@ -21,6 +22,8 @@ using namespace llvm;
 namespace tpc {
 
 AnalysisKey ParamUsageFinder::Key;
+
+static constexpr double NanosecondsPerSecond = 1e9;
 
 unsigned ParameterUsage::lost() const {
   return count_if(Ends, [](const ValueEnd &E) {
@@ -141,6 +144,16 @@ static bool hasNoThreshold(const CmpInst &Compare, unsigned Operand,
   return isComputedFrom(Compare.getOperand(Operand), Other);
 }
 
+/// True if \p Compared, a value in \p F that \p S has led to, is not the
+/// parameter in every call of \p F: it came by an argument, or is loaded from
+/// an object that is an argument.
+bool Follower::holdsInOneCall(const State &S, const Value *Compared,
+                              const Function &F) const {
+  ArrayRef<CallBase *> Callers = Calls.callers(&F);
+  return Callers.size() > 1 &&
+         (S.Path || isLoadedForOneCall(Compared, Callers, Pointers));
+}
+
 /// Adds a flag: \p V, computed from what \p S follows, decides \p D by itself.
 void Follower::addFlag(const State &S, Value *V, Decision D, unsigned Read,
                        bool IsOperand) {
@@ -148,7 +161,7 @@ void Follower::addFlag(const State &S, Value *V, Decision D, unsigned Read,
   // An argument has no place of its own, so the flag is placed at the branch.
   C.IsOperand = IsOperand && isa<Instruction>(V);
   C.How = S.How;
-  C.ByArgument = S.Path && Calls.callers(D.Predicate->getFunction()).size() > 1;
+  C.ByArgument = holdsInOneCall(S, V, *D.Predicate->getFunction());
   C.Read = Read;
   C.Flag = V;
   C.Decisions.push_back(D);
@@ -191,7 +204,8 @@ void Follower::addComparison(const State &S, CmpInst &Compare, unsigned Operand,
   C.Compare = &Compare;
   C.Operand = Operand;
   C.How = S.How;
-  C.ByArgument = S.Path && Calls.callers(Compare.getFunction()).size() > 1;
+  C.ByArgument =
+      holdsInOneCall(S, Compare.getOperand(Operand), *Compare.getFunction());
   C.Decisions = followOutcome(&Compare, S.Path);
   Usage.Comparisons.push_back(std::move(C));
 }
@@ -218,6 +232,41 @@ void Follower::followUseOfMerged(const State &S, Use &U, unsigned Read) {
   else if ((isa<PHINode>(I) && !isShortCircuit(*I, U)) || isa<SelectInst>(I) ||
            isa<FreezeInst>(I))
     carry(S, U);
+}
+
+/// If \p I puts the value of \p S into an object that holds a number, follows
+/// it to where it is taken out again; false if it does not.
+bool Follower::followHeld(const State &S, Instruction &I) {
+  auto *Call = dyn_cast<CallBase>(&I);
+  const Rule *Row = Call ? Rules.match(*Call) : nullptr;
+  if (!Row || Row->Kind != Rule::Held || Row->Relation != "into")
+    return false;
+  const Value *Number = argument(*Call, *Row, Row->Value),
+              *Rest = argument(*Call, *Row, Row->Rest);
+  if (Number != S.V && Rest != S.V)
+    return false;
+  const bool IsRest = Number != S.V;
+  const Value *Other = IsRest ? Number : Rest;
+  std::optional<double> Constant = 0;
+  if (Other)
+    Constant = constantNumber(Other);
+  // Nanoseconds beside seconds that are not known say nothing about the whole;
+  // seconds do.
+  if (IsRest && !Constant) {
+    stopAt(ValueEnd::Mixed, &I);
+    return true;
+  }
+  Transform How = withoutNarrowing(S.How);
+  How.divide(IsRest ? NanosecondsPerSecond : Row->PerSecond);
+  How.add(Constant.value_or(0) /
+          (IsRest ? Row->PerSecond : NanosecondsPerSecond));
+  for (CallBase *Out : Texts.numbersFrom(*Call, *Row)) {
+    Transform Taken = How;
+    if (const Rule *Taking = Rules.match(*Out))
+      Taken.multiply(Taking->PerSecond);
+    push({Out, Taken, nullptr, false}, Call);
+  }
+  return true;
 }
 
 void Follower::followUse(const State &S, Use &U, unsigned Read) {
@@ -252,19 +301,8 @@ void Follower::followUse(const State &S, Use &U, unsigned Read) {
     return push({I, applyCast(S.How, *Cast), S.Path, S.Direct, S.In, S.Origin});
   if (choiceOf(*I))
     return push({I, throughChoice(S.How, *I), S.Path, S.Direct});
-  if (auto *Call = dyn_cast<CallBase>(I))
-    if (const Rule *Row = Rules.match(*Call);
-        Row && Row->Kind == Rule::Held && Row->Relation == "into" &&
-        argument(*Call, *Row, Row->Value) == S.V) {
-      for (CallBase *Out : Texts.numbersFrom(*Call, *Row)) {
-        Transform How = S.How;
-        How.divide(Row->PerSecond);
-        if (const Rule *Taking = Rules.match(*Out))
-          How.multiply(Taking->PerSecond);
-        push({Out, How, nullptr, false}, Call);
-      }
-      return;
-    }
+  if (followHeld(S, *I))
+    return;
   if (carry(S, U))
     return;
   auto Name = [&](const Value *V) { return Names.nameOf(V, Pointers); };
@@ -329,8 +367,10 @@ void Follower::addTexts(unsigned N, const Locations &Objects,
     C.Flag = T.Outcome;
     C.TextRelation = T.Relation;
     C.How = How;
+    ArrayRef<CallBase *> Callers = Calls.callers(T.Outcome->getFunction());
     C.ByArgument =
-        T.ByArgument && Calls.callers(T.Outcome->getFunction()).size() > 1;
+        Callers.size() > 1 &&
+        (isa<Argument>(T.Text) || isOfOneCall(T.Text, Callers, Pointers));
     C.Decisions = followOutcome(T.Outcome, nullptr);
     Usage.Comparisons.push_back(std::move(C));
   }

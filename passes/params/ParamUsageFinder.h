@@ -74,7 +74,8 @@ struct ParameterComparison {
   bool IsOperand = false;
   /// For a comparison of text, whose outcome is Flag: its operator.
   llvm::StringRef TextRelation;
-  /// The value came by an argument, and the function has other calls.
+  /// The value came by an argument, or from an object that is one, and the
+  /// function has other calls.
   bool ByArgument = false;
   Transform How;
   llvm::SmallVector<Decision, 2> Decisions;

@@ -125,11 +125,11 @@ TextUsage::Found TextUsage::comparisonsOf(Locations Objects,
       if (Operand == U.Operands.end() || !Seen.insert(U.Call).second)
         continue;
       unsigned N = Operand - U.Operands.begin();
-      bool ByArgument = isa<Argument>(U.Call->getArgOperand(N));
+      const Value *Text = U.Call->getArgOperand(N);
       bool Left = N == 0 && U.Call->arg_size() > 1;
       if (Relation != "compare") {
         Out.Comparisons.push_back(
-            {U.Call, Left ? swapped(Relation) : Relation, ByArgument});
+            {U.Call, Left ? swapped(Relation) : Relation, Text});
         continue;
       }
       for (User *V : U.Call->users()) {
@@ -138,8 +138,7 @@ TextUsage::Found TextUsage::comparisonsOf(Locations Objects,
         if (Own.empty())
           ++Out.Lost;
         else
-          Out.Comparisons.push_back(
-              {Compare, Left ? swapped(Own) : Own, ByArgument});
+          Out.Comparisons.push_back({Compare, Left ? swapped(Own) : Own, Text});
       }
     }
   }

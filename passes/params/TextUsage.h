@@ -18,7 +18,7 @@ namespace tpc {
 struct TextComparison {
   llvm::Instruction *Outcome; ///< a truth value
   llvm::StringRef Relation;
-  bool ByArgument; ///< the string is an argument of the function
+  const llvm::Value *Text; ///< the pointer to the string
 };
 
 class TextUsage {

@@ -453,8 +453,9 @@ static std::optional<Transform> applyFma(Transform T, const CallBase &Fma,
   return withVariable(std::move(T), "+", C, /*First=*/false, Name);
 }
 
-/// \p T, which only narrows, without that.
-static Transform withoutNarrowing(Transform T) {
+Transform withoutNarrowing(Transform T) {
+  if (!T.isNarrowing())
+    return T;
   Transform Of = T.Inner->Of;
   Of.Width = T.Width;
   return Of;
@@ -462,9 +463,7 @@ static Transform withoutNarrowing(Transform T) {
 
 std::optional<Transform> apply(Transform T, const Instruction &I,
                                const Value *V, int Square, NameOf Name) {
-  // Who keeps a parameter in a smaller integer knows that it fits.
-  if (T.isNarrowing())
-    T = withoutNarrowing(std::move(T));
+  T = withoutNarrowing(std::move(T));
   if (I.getOpcode() == Instruction::FNeg) {
     T.multiply(-1);
     return T;

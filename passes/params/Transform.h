@@ -97,6 +97,10 @@ std::optional<double> constantNumber(const llvm::Value *V,
 /// The shortest text that reads back as \p X.
 std::string shortest(double X);
 
+/// \p T without its steps if they only narrow: who keeps a parameter in a
+/// smaller integer knows that it fits.
+Transform withoutNarrowing(Transform T);
+
 } // namespace tpc
 
 #endif // TPC_TRANSFORM_H

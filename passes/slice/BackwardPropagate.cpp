@@ -103,6 +103,7 @@ private:
   bool isSeenThrough(const CallBase &Call);
   bool isCounting(const Instruction &I);
   bool isLeftBehind(const Instruction &I);
+  void enterPutIn(CallBase &Call);
   void enterTouched(CallBase &Call);
   void enterVirtualCall(const CallBase &Call);
   void enterThrowers(CallBase &Call);
@@ -110,6 +111,7 @@ private:
   void enterContents(const Value *Pointer, Instruction &At, bool IsOfCaller);
   void enterLoadsOf(const Value *Pointer);
   void enterTarget(const Value *Pointer, Instruction &At);
+  void enterBorrowed(const Value *Pointer);
   bool isTooLate(const Instruction &Write) const;
   void enterPublisher(const Value *Object);
   void enterReachable(CallBase &Call);
@@ -358,6 +360,17 @@ bool Slicer::isSeenThrough(const CallBase &Call) {
   });
 }
 
+/// If \p Call puts its arguments into a container, all of each matters.
+void Slicer::enterPutIn(CallBase &Call) {
+  const ContainerMethod *Method = Rules.container(Call);
+  if (!Method || !Method->Writes)
+    return;
+  const Value *Container = containerOf(Call);
+  for (const Use &Arg : Call.args())
+    if (Arg->getType()->isPointerTy() && Arg.get() != Container)
+      enterContents(Arg, Call, /*IsOfCaller=*/false);
+}
+
 /// \p Call gets an object that matters: it may put its other arguments into the
 /// object, and may return a pointer into it through which it is written.
 void Slicer::enterTouched(CallBase &Call) {
@@ -365,8 +378,10 @@ void Slicer::enterTouched(CallBase &Call) {
   // publisher is not part of that.
   if (Seen.lookup(&Call) & Exposes)
     return;
-  if (!isSeenThrough(Call))
+  if (!isSeenThrough(Call)) {
     enterArguments(Call);
+    enterPutIn(Call);
+  }
   if (Call.getType()->isPointerTy())
     enterDerived(&Call);
 }
@@ -550,6 +565,25 @@ void Slicer::enterTarget(const Value *Pointer, Instruction &At) {
   ShownAt = nullptr;
 }
 
+/// What is written through the message that the object at \p Pointer has
+/// borrowed from a publisher matters.
+void Slicer::enterBorrowed(const Value *Pointer) {
+  std::optional<uint64_t> Offset = borrowedAt(Debug.pointee(Pointer));
+  if (!Offset)
+    return;
+  const Value *Object = getUnderlyingObject(Pointer);
+  const DataLayout &Layout = Exposing[Current].At->getDataLayout();
+  for (const User *U : Object->users()) {
+    const auto *Field = dyn_cast<GetElementPtrInst>(U);
+    APInt At(Layout.getIndexTypeSizeInBits(Object->getType()), 0);
+    if (!Field || !Field->accumulateConstantOffset(Layout, At) || At != *Offset)
+      continue;
+    for (const User *Load : Field->users())
+      if (isa<LoadInst>(Load) && Load->getType()->isPointerTy())
+        enterDerived(Load, /*IntoCallees=*/true);
+  }
+}
+
 /// Everything that an exposing statement shows: the contents of its arguments.
 void Slicer::enterReachable(CallBase &Call) {
   const Rule *Row = Rules.match(Call);
@@ -564,6 +598,7 @@ void Slicer::enterReachable(CallBase &Call) {
       continue;
     enterContents(Arg, Call, /*IsOfCaller=*/false);
     enterTarget(Arg, Call);
+    enterBorrowed(Arg);
   }
 }
 

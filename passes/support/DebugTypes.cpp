@@ -37,6 +37,18 @@ bool isSmartPointer(const DIType *T) {
   return Name == "shared_ptr" || Name == "unique_ptr";
 }
 
+std::optional<uint64_t> borrowedAt(const DIType *T) {
+  const auto *Class = dyn_cast_or_null<DICompositeType>(T);
+  if (!Class || !Class->getName().starts_with("LoanedMessage<"))
+    return std::nullopt;
+  for (const DINode *Element : Class->getElements())
+    if (const auto *Field = dyn_cast_or_null<DIDerivedType>(Element);
+        Field && Field->getTag() == dwarf::DW_TAG_member &&
+        Field->getName() == "message_")
+      return Field->getOffsetInBits() / CHAR_BIT;
+  return std::nullopt;
+}
+
 const DIType *firstArgumentOf(const DICompositeType &Class) {
   for (const DITemplateParameter *P : Class.getTemplateParams())
     return P ? P->getType() : nullptr;

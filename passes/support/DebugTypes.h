@@ -16,6 +16,8 @@
 #include "llvm/IR/Operator.h"
 #include "llvm/IR/PassManager.h"
 
+#include <optional>
+
 namespace tpc {
 
 class DebugTypes {
@@ -91,6 +93,10 @@ private:
   llvm::StringMap<unsigned> ByName;
   llvm::SmallVector<const llvm::DICompositeType *, 0> Classes;
 };
+
+/// Where an object of the class \p T has its pointer to a message that it has
+/// borrowed from a publisher, in bytes; none if it has none.
+std::optional<uint64_t> borrowedAt(const llvm::DIType *T);
 
 /// True for std::shared_ptr, boost::shared_ptr and std::unique_ptr.
 bool isSmartPointer(const llvm::DIType *T);

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <future>
+#include <map>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -151,8 +152,24 @@ namespace topic_statistics {
 class SubscriptionTopicStatistics;
 } // namespace topic_statistics
 
+template <typename M, typename A = std::allocator<void>> class LoanedMessage {
+public:
+  LoanedMessage(LoanedMessage &&Other) : Of(Other.Of), message_(Other.message_) {
+    Other.message_ = nullptr;
+  }
+  virtual ~LoanedMessage() { release(); }
+  M &get() const { return *message_; }
+
+private:
+  void release();
+  const void *Of;
+  M *message_;
+};
+
 template <typename M, typename A = std::allocator<void>> class Publisher {
 public:
+  LoanedMessage<M> borrow_loaned_message();
+  void publish(LoanedMessage<M> &&Message);
   virtual ~Publisher() = default;
   template <typename T>
   std::enable_if_t<std::is_same<T, M>::value> publish(const T &Message);
@@ -262,6 +279,11 @@ public:
     Value = P.get_value<T>();
     return true;
   }
+  std::vector<Parameter>
+  get_parameters(const std::vector<std::string> &Names) const;
+  template <typename T>
+  bool get_parameters(const std::string &Prefix,
+                      std::map<std::string, T> &Values) const;
   template <typename T>
   bool get_parameter_or(const std::string &Name, T &Value,
                         const T &Default) const {
