@@ -73,6 +73,19 @@ bool LogFile::simulated(Thread &T, int64_t Now) {
   return T.Next != T.End || nextChunk(T);
 }
 
+void LogFile::writeLate(Thread &T, const Site &S, uint32_t Bits, int64_t Steady,
+                        int64_t Simulated, double Compared, double Threshold) {
+  if ((T.File != this || T.Next == T.End) && !nextChunk(T))
+    return;
+  if (Simulated != T.Simulated) {
+    T.Simulated = Simulated;
+    put(*T.Next++, SimulatedRecord, 0, Steady, Simulated, INT64_C(0));
+    if (T.Next == T.End && !nextChunk(T))
+      return;
+  }
+  put(*T.Next++, ReportRecord | Bits, S.Number, Steady, Compared, Threshold);
+}
+
 Record *LogFile::systemRecords(uint32_t Count) {
   if (!SystemNext || SystemEnd - SystemNext < static_cast<ptrdiff_t>(Count)) {
     if (SystemNext) {

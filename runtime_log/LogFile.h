@@ -63,6 +63,12 @@ public:
     return true;
   }
 
+  /// One report of earlier, written by \p T, with the time that it had; its
+  /// site is announced. \p Simulated: -1 if the time is not.
+  void writeLate(Thread &T, const Site &S, uint32_t Bits, int64_t Steady,
+                 int64_t Simulated, double Compared, double Threshold);
+  void announce(Site &S);
+
   void write(const Summary &S);
   void write(const Dropped &D);
   void write(const ReadName &N);
@@ -104,7 +110,6 @@ private:
 
   bool nextChunk(Thread &T);
   bool simulated(Thread &T, int64_t Now);
-  void announce(Site &S);
   void announceLocked(Site &S);
   bool writeText(uint32_t What, uint32_t Site, const std::string &Text);
   /// Space for \p Count consecutive records in a system chunk; null if there is

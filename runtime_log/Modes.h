@@ -2,6 +2,7 @@
 #ifndef TPC_MODES_H
 #define TPC_MODES_H
 
+#include "Layout.h"
 #include "LogFile.h"
 #include "Sink.h"
 #include "Sites.h"
@@ -51,6 +52,12 @@ bool isOverCap(Site &S, bool IsFlop);
 
 /// Passes \p R to the chosen sink; \p Bits are those of the records in a file.
 void emit(Thread &T, Site &S, const Report &R, uint32_t Bits);
+
+/// Of a report in a file: the policy has the evaluation in a summary, too.
+inline uint32_t edgeBit() {
+  const Mode M = NowMode.load();
+  return M == Mode::Edges || M == Mode::Light ? layout::EdgeBit : 0;
+}
 
 } // namespace tpc
 

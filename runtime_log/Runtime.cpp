@@ -45,7 +45,13 @@ namespace {
 /// Represents the file among the sinks.
 class FileSink final : public Sink {
 public:
-  void take(const Report &) override {} // log_one writes these itself
+  /// log_one writes these itself, unless the file was chosen this moment.
+  void take(const Report &R) override {
+    Site *S = sites().find(R.Key);
+    if (LogFile *F = NowFile.load(); F && S && ThisThread)
+      F->write(*ThisThread, *S, edgeBit() | layout::bits(R.Result, R.Outcome),
+               R.Compared, R.Threshold);
+  }
   void take(const Summary &S) override {
     if (LogFile *F = NowFile.load())
       F->write(S);
@@ -100,12 +106,14 @@ private:
   int64_t runDue(int64_t Now);
   void eachSecond();
   void accountForDrops();
+  void giveLate();
 
   /// Taken before Changing. The threads whose first reports come while the
   /// runtime starts wait for this one only: the helper thread waits, with
   /// Changing locked, for threads that are inside a report.
   std::mutex Starting;
   std::mutex Changing;      ///< for everything that follows
+  Sink *Left = nullptr;     ///< because its ROS cannot be used
   Config Held;              ///< as it was set
   Config Filled;            ///< what holds
   bool IsStarted = false;   ///< changes while both are locked
@@ -249,7 +257,11 @@ bool Runtime::choose(const Config &C) {
   tpc_reporting = C.Sink == SinkKind::Off ? ReportNone
                   : IsLight               ? ReportFew
                                           : ReportAll;
-  if (Old && Old != NowSink.load())
+  if (!Old || Old == NowSink.load())
+    return true;
+  if (C.Sink == SinkKind::File && !whyNoRos().empty())
+    (Left = Old)->giveTo(*NowFile.load());
+  else
     Old->end();
   return true;
 }
@@ -434,10 +446,17 @@ void Runtime::flush(bool IsEnd) {
 
 void Runtime::eachSecond() {
   Clock::adjust();
+  giveLate();
   if (Held.Sink == SinkKind::File)
     NowFile.load()->sync();
   accountForDrops();
   ReadNames::all().give(*NowSink.load(), Clock::steady());
+}
+
+/// Threads may have been inside the sink that was left.
+void Runtime::giveLate() {
+  if (LogFile *F = NowFile.load(); F && Left)
+    Left->giveTo(*F);
 }
 
 void Runtime::accountForDrops() {
@@ -503,6 +522,7 @@ void Runtime::end() {
     accountForDrops();
     ReadNames::all().give(S, Clock::steady());
   }
+  giveLate();
   S.end();
   rosEnd(/*IsInterrupted=*/false);
   if (LogFile *F = NowFile.load())

@@ -6,6 +6,8 @@
 
 namespace tpc {
 
+class LogFile;
+
 /// Takes reports. There is one of each kind in a process, and it is never
 /// destroyed. A sink may be chosen, left and chosen again, and threads may
 /// still be inside take() after it was left. In one thread, a call never comes
@@ -35,6 +37,10 @@ public:
 
   /// The sink was left, or the process ends: sends what is waiting.
   virtual void end() {}
+
+  /// The sink was left because its ROS cannot be used: everything that is
+  /// waiting goes to \p To.
+  virtual void giveTo(LogFile &To) { (void)To; }
 
   /// For the status line: what a user wants to know about it, such as
   /// `file=PATH`.

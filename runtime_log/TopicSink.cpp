@@ -8,6 +8,8 @@
 //
 //===----------------------------------------------------------------------===//
 #include "Clock.h"
+#include "LogFile.h"
+#include "Modes.h"
 #include "ReadNames.h"
 #include "Ros.h"
 #include "Runtime.h"
@@ -39,6 +41,7 @@ public:
   void poll() override;
   bool isPolled() const override;
   void end() override;
+  void giveTo(LogFile &To) override;
   std::string status() const override;
 
   void setSubscribers(size_t Count) override;
@@ -242,6 +245,20 @@ void TopicSink::end() {
   if (Unsent && (K != SinkKind::Auto || !whyNoRos().empty()))
     warn(std::to_string(Unsent) + " evaluations were not sent on " + topic() +
          ": nobody listened, or the node was shut down");
+}
+
+void TopicSink::giveTo(LogFile &To) {
+  if (!Something)
+    return;
+  TopicStore::Batch Batch;
+  {
+    std::lock_guard<std::mutex> Guard(StoreLock);
+    Batch = Store.takeAll();
+    Something = false;
+  }
+  Thread &T = ThisThread ? *ThisThread : *makeThread();
+  if (ReportMark Mark(T); Mark)
+    write(Batch, edgeBit(), rosTimeIsSimulated(), T, To);
 }
 
 std::string TopicSink::status() const {

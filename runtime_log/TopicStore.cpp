@@ -1,6 +1,8 @@
 //===- TopicStore.cpp -----------------------------------------------------===//
 #include "TopicStore.h"
 
+#include "Clock.h"
+#include "LogFile.h"
 #include "Modes.h"
 
 #include <cstring>
@@ -11,27 +13,31 @@ namespace tpc {
 static constexpr uint32_t BlockEntries = 4096;
 static constexpr size_t BlockBytes = size_t(512) * 1024;
 
-/// Stands before each entry in a block; the text of a summary follows.
+/// Stands before each entry in a block; a summary follows.
 namespace {
 struct Head {
   int64_t Ns;
   double Compared, Threshold;
   Site *Of;
   uint64_t Evaluations; ///< for a summary
-  uint32_t Length;      ///< of the text
+  int64_t Steady;
+  uint32_t Length; ///< of the summary
   bool Guessed;
   LineKind Kind;
   bool Result, Outcome;
 };
 } // namespace
 
-/// Calls \p Visit(Head, Text) for each entry of a block.
+/// Calls \p Visit(Head, Summary or null) for each entry of a block.
 template <typename F> static void forEach(const TopicStore::Block &B, F Visit) {
   const std::string_view Data = B.data();
   for (size_t At = 0; At < Data.size();) {
     Head H;
     std::memcpy(&H, Data.data() + At, sizeof(H));
-    Visit(H, Data.substr(At + sizeof(H), H.Length));
+    Summary S;
+    if (H.Length)
+      std::memcpy(&S, Data.data() + At + sizeof(H), sizeof(S));
+    Visit(H, H.Length ? &S : nullptr);
     At += sizeof(H) + H.Length;
   }
 }
@@ -83,8 +89,9 @@ void TopicStore::add(Time When, const Report &R) {
   Site *Of = sites().find(R.Key);
   if (!Of)
     return;
-  const Head H{When.Ns, R.Compared,   R.Threshold,      Of,       1,
-               0,       When.Guessed, LineKind::Report, R.Result, R.Outcome};
+  const Head H{
+      When.Ns, R.Compared,   R.Threshold,      Of,       1,        Clock::now(),
+      0,       When.Guessed, LineKind::Report, R.Result, R.Outcome};
   if (char *To = allocate(sizeof(H))) {
     std::memcpy(To, &H, sizeof(H));
     return;
@@ -96,20 +103,20 @@ void TopicStore::add(Time When, const Report &R) {
 
 void TopicStore::add(Time When, const Summary &S, bool MayBeShort) {
   const bool IsShort = S.IsLight && MayBeShort;
-  // A short summary's text begins with its span.
-  const std::string Text = IsShort ? seconds(S.BeginRos, 7) + ';' +
-                                         seconds(S.EndRos, 7) + '\n' +
-                                         formatShort(S)
-                                   : format(S);
-  const Head H{
-      When.Ns,      S.Compared,
-      S.Threshold,  &sites()[S.Site],
-      S.Count,      static_cast<uint32_t>(Text.size()),
-      When.Guessed, IsShort ? LineKind::ShortSummary : LineKind::Summary,
-      S.Result,     S.Outcome};
+  const Head H{When.Ns,
+               S.Compared,
+               S.Threshold,
+               &sites()[S.Site],
+               S.Count,
+               S.EndSteady,
+               sizeof(S),
+               When.Guessed,
+               IsShort ? LineKind::ShortSummary : LineKind::Summary,
+               S.Result,
+               S.Outcome};
   if (char *To = allocate(sizeof(H) + H.Length)) {
     std::memcpy(To, &H, sizeof(H));
-    std::memcpy(To + sizeof(H), Text.data(), Text.size());
+    std::memcpy(To + sizeof(H), &S, sizeof(S));
     return;
   }
   account(S.Key, DropReason::Stopped, S.Count, 0);
@@ -131,7 +138,7 @@ void TopicStore::account(const std::string &Key, DropReason Why, uint64_t Count,
 /// that the dropped reports show.
 void TopicStore::evict() {
   Block &Oldest = Blocks[First];
-  forEach(Oldest, [this](const Head &H, std::string_view) {
+  forEach(Oldest, [this](const Head &H, const Summary *) {
     Site &Of = *H.Of;
     Of.Evicted.Count += H.Evaluations;
     DroppedInAll += H.Evaluations;
@@ -194,11 +201,16 @@ const char *prefixOf(LineKind K) {
   return "";
 }
 
+/// What the text of a short summary begins with.
+static std::string spanOf(const Summary &S) {
+  return seconds(S.BeginRos, 7) + ';' + seconds(S.EndRos, 7) + '\n';
+}
+
 void forEachLine(const TopicStore::Batch &B, int64_t Now, bool Simulated,
                  const std::function<void(LineKind, int64_t, std::string_view,
                                           const char *)> &Visit) {
   for (const TopicStore::Block &Part : B.Blocks)
-    forEach(Part, [&](const Head &H, std::string_view Text) {
+    forEach(Part, [&](const Head &H, const Summary *S) {
       const int64_t Ns = H.Guessed && Simulated ? 0 : H.Ns;
       const char *Node = H.Of->Node.load(std::memory_order_acquire);
       if (H.Kind == LineKind::Report)
@@ -207,7 +219,10 @@ void forEachLine(const TopicStore::Batch &B, int64_t Now, bool Simulated,
                             H.Threshold, H.Outcome}),
               Node);
       else
-        Visit(H.Kind, Ns, Text, Node);
+        Visit(H.Kind, Ns,
+              H.Kind == LineKind::Summary ? format(*S)
+                                          : spanOf(*S) + formatShort(*S),
+              Node);
     });
   for (const auto &[Of, Counts] : B.Accounts)
     Visit(LineKind::Dropped, Now,
@@ -249,6 +264,26 @@ std::vector<TopicStore::Lines> linesOf(const TopicStore::Batch &B, int64_t Now,
   if (Found.back().Text.empty())
     Found.pop_back();
   return Found;
+}
+
+void write(const TopicStore::Batch &B, uint32_t Bits, bool Simulated, Thread &T,
+           LogFile &To) {
+  for (const TopicStore::Block &Part : B.Blocks)
+    forEach(Part, [&](const Head &H, const Summary *S) {
+      To.announce(*H.Of);
+      if (S)
+        return To.write(*S);
+      const int64_t Sim = H.Guessed ? 0 : H.Ns;
+      To.writeLate(T, *H.Of, Bits | layout::bits(H.Result, H.Outcome), H.Steady,
+                   Simulated ? Sim : -1, H.Compared, H.Threshold);
+    });
+  for (const auto &[Of, Counts] : B.Accounts) {
+    Site *S = Of.first.empty() ? nullptr : sites().find(Of.first.c_str());
+    if (S)
+      To.announce(*S);
+    To.write(Dropped{Of.first.c_str(), S ? S->Number : 0, Counts.first,
+                     Counts.second, Of.second});
+  }
 }
 
 } // namespace tpc

@@ -19,6 +19,9 @@
 
 namespace tpc {
 
+class LogFile;
+struct Thread;
+
 /// Keeps reports and summaries in order: the newest 65,536 in blocks of 4,096.
 /// What is dropped to make space is counted for each site.
 ///
@@ -114,6 +117,11 @@ const char *prefixOf(LineKind K);
 void forEachLine(const TopicStore::Batch &B, int64_t Now, bool Simulated,
                  const std::function<void(LineKind, int64_t, std::string_view,
                                           const char *)> &Visit);
+
+/// Writes everything in \p B to a file, as if \p T had reported it: with the
+/// times that it had, each report with \p Bits. Names are not written.
+void write(const TopicStore::Batch &B, uint32_t Bits, bool Simulated, Thread &T,
+           LogFile &To);
 
 /// The lines of \p B, in messages of about \p MessageBytes.
 std::vector<TopicStore::Lines> linesOf(const TopicStore::Batch &B, int64_t Now,

@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from threading import Timer
 from typing import TYPE_CHECKING, TextIO, cast
 
 import click
@@ -58,6 +59,31 @@ def waiting(console: Console, what: str) -> Status:
     """A moving sign before what is being done; of ASCII where the terminal takes no more."""
     spinner = "dots" if console.encoding.startswith("utf") else "line"
     return console.status(escape(plain(what)), spinner=spinner)
+
+
+@contextmanager
+def telling(what: str) -> Iterator[None]:
+    """Say what is being done if it takes more than two seconds: a moving sign, or a line."""
+    shown: list[Status] = []
+
+    def show() -> None:
+        console = progress_console()
+        if not console.is_terminal:
+            say(f"pytpc: {plain(what)}")
+            return
+        shown.append(waiting(console, what))
+        shown[0].start()
+
+    timer = Timer(_SILENT_S, show)
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
+        timer.join()
+        for status in shown:
+            status.stop()
 
 
 def print_json(document: object, *, indent: int | None = 1) -> None:

@@ -12,7 +12,7 @@ from rich.table import Table
 from pytpc.base.errors import RunError
 from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import JSON
-from pytpc.cli.console import console, print_json, progress, table_of, warn
+from pytpc.cli.console import console, print_json, progress, table_of, telling, warn
 from pytpc.cli.lines import say
 from pytpc.cli.running_graph import RUNNING, use_graph
 from pytpc.python_runtime.config import POLICIES, SINKS
@@ -81,7 +81,8 @@ def _settled(
     graph: SettableNodes, nodes: tuple[str, ...], settings: dict[str, Value], *, clear: bool
 ) -> list[NodeStatus]:
     """Set the nodes, and ask them."""
-    named = chosen(graph.names(), nodes)
+    with telling("looking for the nodes"):
+        named = chosen(graph.names(), nodes)
     for node in named if nodes else [None]:
         if clear:
             graph.clear(node)

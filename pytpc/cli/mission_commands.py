@@ -39,7 +39,7 @@ from pytpc.cli.running_graph import ROS, ros2_here, tell
 from pytpc.recording.faults import faults_of
 from pytpc.recording.mission import REPORTS_FOLDER, RUN_FILE, read_run
 from pytpc.ros.folder_lock import alone_in
-from pytpc.ros.mission_run import BAG_FILE, DiedNode, refuse_earlier
+from pytpc.ros.mission_run import BAG_FILE, refuse_earlier
 from pytpc.ros.ros1.master import Master, uri_of
 from pytpc.ros.ros2.address import is_ros2, words_of
 
@@ -213,25 +213,10 @@ def _with_static(options: RecordOptions, given: Path | None) -> RecordOptions:
     )
 
 
-def _kept_in(
-    died: dict[str, DiedNode], tell_it: Callable[[DiedNode], None] | None
-) -> Callable[[DiedNode], None]:
-    def keep(node: DiedNode) -> None:
-        died[node.name] = node
-        if tell_it is not None:
-            tell_it(node)
-
-    return keep
-
-
 def record_mission(
-    words: LaunchWords,
-    output: Path,
-    given: MissionArguments,
-    stop: Stop,
-    died: dict[str, DiedNode] | None = None,
+    words: LaunchWords, output: Path, given: MissionArguments, stop: Stop
 ) -> MissionRun:
-    """Run a launch file, and show how it goes. ``died`` gets how each node died last.
+    """Run a launch file, and show how it goes.
 
     Raises:
         RunError: it fails; what there is of it is in the folder.
@@ -253,8 +238,6 @@ def record_mission(
         kept_if_it_fails(output, lambda: has_begun),
     ):
         options = replace(given.options(output, words), on_progress=advance, on_graph=begun)
-        if died is not None:
-            options = replace(options, on_died=_kept_in(died, options.on_died))
         return record_launch(
             words.workspace,
             options,

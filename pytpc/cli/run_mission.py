@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -81,24 +81,21 @@ def run_mission(
     assert words.workspace is not None
     output = folder_for(words.launch, given.output)
     stop = Stop(STOPPING if observer is None else "")
-    died: dict[str, DiedNode] = {}
     with stop.on_signals():
         if observer is None:
-            run = record_mission(words, output, given, stop, died)
+            run = record_mission(words, output, given, stop)
         else:
-            run = _with_keys(words, output, given, _Observer(observer, references, died), stop)
+            run = _with_keys(words, output, given, _Observer(observer, references), stop)
     # From here on, Ctrl-C ends it.
     try:
-        recording = _read(run, output, words.workspace, died)
+        recording = _read(run, output, words.workspace)
         _answer(recording, output, references)
     except KeyboardInterrupt:
         tell(f"the recording is complete; for the verdict: pytpc rank {shlex.quote(str(output))}")
         raise
 
 
-def _read(
-    run: MissionRun, output: Path, workspace: Path, died: Mapping[str, DiedNode]
-) -> Recording:
+def _read(run: MissionRun, output: Path, workspace: Path) -> Recording:
     """Read the recording, and say how the mission went.
 
     Raises:
@@ -107,7 +104,7 @@ def _read(
     marks = None
     try:
         if not run.has_reports:
-            why = "; ".join(each.words for each in died.values()) or (
+            why = "; ".join(each.words for each in run.died) or (
                 f"does the launch file start nodes of {workspace}? See"
                 f" `pytpc doctor {shlex.quote(str(workspace))}`"
             )
@@ -120,11 +117,10 @@ def _read(
 
 
 class _Observer(NamedTuple):
-    """Who marks in this terminal, the good runs beside which the screen judges, and who died."""
+    """Who marks in this terminal, and the good runs beside which the screen judges."""
 
     name: str
     references: Sequence[Path]
-    died: dict[str, DiedNode]
 
 
 class _Notes:
@@ -133,10 +129,10 @@ class _Notes:
     For the end it keeps how each node died last, and why nothing was reported.
     """
 
-    def __init__(self, died: dict[str, DiedNode]) -> None:
+    def __init__(self) -> None:
         self.shown: list[str] = []
         self.reasons: list[str] = []
-        self.nodes = died
+        self.nodes: dict[str, DiedNode] = {}
 
     def quiet(self, line: str, _is_fault: bool) -> None:
         """Nodes report nothing."""
@@ -167,7 +163,7 @@ def _with_keys(
     good = good_runs(observer.references, static)
     fresh = fresh_watching(static, PLAIN)
     screen = progress_console()
-    notes = _Notes(observer.died)
+    notes = _Notes()
     flown = FlownMission(
         words.workspace,
         replace(given.options(output, words), on_quiet=notes.quiet, on_died=notes.died),

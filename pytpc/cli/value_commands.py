@@ -24,7 +24,7 @@ from pytpc.api.values import (
 from pytpc.base.wording import listed, plain
 from pytpc.cli.arguments import JSON, PATH, as_object
 from pytpc.cli.completion_commands import offer_parameters
-from pytpc.cli.console import console, print_json, progress, table_of, warn
+from pytpc.cli.console import console, print_json, progress, table_of, telling, warn
 from pytpc.cli.lines import say
 from pytpc.cli.running_graph import ROS, use_graph
 from pytpc.ros.ros2.address import is_ros2, words_of
@@ -244,9 +244,10 @@ def _write(change: FileChange, journal: Journal, given: _ApplyArguments) -> dict
 def _set_live(
     journal: Journal, change_to: tuple[str, str], graph: str, given: _ApplyArguments
 ) -> dict[str, object]:
-    done = values.apply_live(
-        change_to, journal, graph=graph, dry_run=given.dry_run, force=given.force
-    )
+    with telling("asking the nodes"):
+        done = values.apply_live(
+            change_to, journal, graph=graph, dry_run=given.dry_run, force=given.force
+        )
     change, entry = done.change, done.entry
     told = _told(change, done.holds, done.taken)
     if given.dry_run and change.service:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -13,11 +13,11 @@ from rich.console import Console
 
 from pytpc.api.comparing import RecordedRun, diff_running
 from pytpc.api.diagnosing import AskedMission
+from pytpc.api.graph_feed import GraphFeed
 from pytpc.api.live_diagnosis import LiveDiagnosis, asked_of_graph
 from pytpc.api.live_mission import (
     KINDS,
     Feed,
-    GraphFeed,
     RecordedFeed,
     WatchedMission,
     Watching,
@@ -27,7 +27,7 @@ from pytpc.base.errors import InputError, RunError
 from pytpc.base.signals import signals_end
 from pytpc.base.wording import plain
 from pytpc.cli.arguments import JSON, PATH, REFERENCE, as_object
-from pytpc.cli.console import print_json, warn
+from pytpc.cli.console import print_json, telling, warn
 from pytpc.cli.mark_commands import (
     OBSERVER,
     check_observer,
@@ -58,6 +58,7 @@ from pytpc.present.watch_screen import LAYOUTS, WatchOptions, table
 from pytpc.recording.marking_session import clock_text
 from pytpc.recording.mission import Recording
 from pytpc.ros.graphs import marks_at
+from pytpc.ros.ros2.address import words_of
 from pytpc.static.static_info import StaticInfo
 
 _ONCE_S = 5.0
@@ -97,7 +98,8 @@ class _WatchArguments(AskArguments):
     "--seconds",
     type=click.FloatRange(min=0.0, max=86400.0),
     metavar="N",
-    help="With --once: listen this long (5), or go this far into RECORDING (to its end).",
+    help="With --once: listen this long (5) from the first report on, or go this far into RECORDING"
+    " (to its end).",
 )
 @JSON
 @as_object(_WatchArguments)
@@ -129,6 +131,8 @@ def watch_command(given: _WatchArguments) -> None:
         raise RunError("standard input is not a terminal, so no keys can be read; see --once")
     target = marks_target(given.recording, given.observer, given.output, graph)
     if graph is not None:
+        mission: MarkedMission
+        feed: Feed
         mission, feed = opened_graph(graph.master, given.observer, fresh)
     else:
         mission, feed = _opened(run, fresh)
@@ -154,7 +158,7 @@ def _static(given: _WatchArguments, graph: UsedGraph | None, run: RecordedRun | 
     return static
 
 
-def opened_graph(master: str, observer: str, fresh: Watching) -> tuple[MarkedMission, Feed]:
+def opened_graph(master: str, observer: str, fresh: Watching) -> tuple[MarkedMission, GraphFeed]:
     """The graph to mark, and its feed to watch."""
     return marks_at(master, observer, "watching", advertise=False), GraphFeed(master, fresh)
 
@@ -217,10 +221,8 @@ def _once(
         found_so_far = asked.diagnosis if past else None
     else:
         assert graph is not None
-        mission, feed = opened_graph(graph.master, "", fresh)
-        watched = WatchedMission(mission, feed, options)
         differing = diff_running(good, graph.master, fresh.static_info) if good else None
-        _listen(watched, _ONCE_S if seconds is None else seconds)
+        watched = _listened(graph.master, fresh, options, _ONCE_S if seconds is None else seconds)
         now_ns = watched.now_ns() or 0
         start_ns = 0
     if differing is not None:
@@ -251,12 +253,25 @@ def _once(
             console.print(row, highlight=False, soft_wrap=True)
 
 
-def _listen(watched: WatchedMission, seconds: float) -> None:
+def _listened(
+    master: str, fresh: Watching, options: WatchOptions, seconds: float
+) -> WatchedMission:
+    """The graph after so many seconds, which begin when the nodes that report are found."""
+    mission, feed = opened_graph(master, "", fresh)
+    watched = WatchedMission(mission, feed, options)
+    with telling(f"looking for nodes that report: {words_of(master)}"):
+        _take(watched, lambda: feed.is_settled)
     until = time.monotonic() + seconds
+    _take(watched, lambda: time.monotonic() >= until)
+    return watched
+
+
+def _take(watched: WatchedMission, is_enough: Callable[[], bool]) -> None:
+    """Take in what arrives, until it is enough."""
     try:
         with signals_end():
             watched.status()
-            while time.monotonic() < until:
+            while not is_enough():
                 time.sleep(_TURN_S)
                 watched.tick()
     except BaseException:

@@ -25,6 +25,10 @@ class LiveSource(Protocol):
     def broken(self) -> Mapping[str, int]:
         """How many connections of each node ended within a message."""
 
+    @property
+    def patience_s(self) -> float:
+        """How long the first report of those who were found may take; 0 where it is there."""
+
     def look(self) -> None:
         """Find new publishers, or raise RunError where nobody is."""
 
@@ -37,6 +41,7 @@ class LiveSource(Protocol):
 
 class _Ros1Reports(UnregisteredSubscriber):
     decoders = ROS1
+    patience_s = 0.0
 
 
 def reports_at(address: str) -> LiveSource:

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 from pytpc.base.atomic import write_atomic
@@ -122,6 +122,27 @@ class DiedNode:
         return f"the node {self.name} died ({how})"
 
 
+class Deaths:
+    """How each node that died did so last; ``tell`` is called with each death."""
+
+    def __init__(self, tell: Callable[[DiedNode], None] | None) -> None:
+        """Nobody has died yet."""
+        self._tell = tell
+        self._last: dict[str, DiedNode] = {}
+
+    def see(self, died: Iterable[DiedNode]) -> None:
+        """These nodes died."""
+        for node in died:
+            self._last[node.name] = node
+            if self._tell is not None:
+                self._tell(node)
+
+    @property
+    def last(self) -> tuple[DiedNode, ...]:
+        """One for each node."""
+        return tuple(self._last.values())
+
+
 @dataclass(frozen=True, slots=True)
 class RecordOptions:
     """What a recording has, where it is written, and when it ends.
@@ -185,7 +206,7 @@ class MissionRun:
     connections that ended within a message. ``marks`` counts those of all observers, without those
     that were taken back. ``files``, ``reports_in_files`` and ``summaries_in_files`` count what
     nodes wrote to the folder's files. ``is_reporting`` says whether a report or a summary came over
-    the graph.
+    the graph. ``died`` has how each node that died did so last.
     """
 
     bag: Path
@@ -205,6 +226,7 @@ class MissionRun:
     summaries_in_files: int = 0
     is_reporting: bool = False
     marks: int = 0
+    died: tuple[DiedNode, ...] = ()
 
     @classmethod
     def of(
@@ -323,6 +345,8 @@ def keep_static(options: RecordOptions) -> None:
 def save_run(run: MissionRun, options: RecordOptions) -> None:
     """Write run.json: the fields of ``run``, the launch file and the static information, if any.
 
+    Who died is left out.
+
     Raises:
         TpcError: the file cannot be written.
     """
@@ -340,10 +364,11 @@ def save_run(run: MissionRun, options: RecordOptions) -> None:
             "sha256": sha256_of(copy) if copy.is_file() else None,
             "guessed": options.is_static_guessed,
         },
-        **asdict(run),
+        **asdict(replace(run, died=())),
         "bag": run.bag.name,
         "params": run.params.name,
     }
+    del document["died"]
     write_atomic(options.out_dir / RUN_FILE, json.dumps(document, indent=1).encode() + b"\n")
 
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 import tpc_file
 from mission_samples import BagFile, equal_tables, key, line, ns
+from recorded_messages import log
 from ros2_bags import Ros2Bag
-from test_mission import log
 from tpc_file import TpcFile, report, site, sync
 
 from pytpc.base.errors import InputError

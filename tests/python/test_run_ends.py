@@ -42,9 +42,18 @@ def test_what_is_left_of_a_failed_mission_is_named(tmp_path, capsys):
     assert fail(has_begun=False) == ""
 
 
-def flown(folder: Path, **counts: int) -> MissionRun:
+def flown(folder: Path, *died: DiedNode, **counts: int) -> MissionRun:
     bag, params = folder / "mission.bag", folder / "params.yaml"
-    return MissionRun(bag, params, "ended", 1.0, 1.0, 0, {}, {}, {}, **counts)
+    return MissionRun(bag, params, "ended", 1.0, 1.0, 0, {}, {}, {}, died=died, **counts)
+
+
+def test_who_died_is_why_nothing_was_reported(tmp_path):
+    died = DiedNode("camera-2", -11, (), Path("log"))
+    with (
+        click.Context(click.Command("run")),
+        pytest.raises(InputError, match=r"-2 died .signal 11"),
+    ):
+        run_mission._read(flown(tmp_path, died), tmp_path, tmp_path)
 
 
 # A comparison that never changes its result sends summaries alone.
@@ -58,9 +67,9 @@ def test_a_mission_with_summaries_alone_is_diagnosed(tmp_path, monkeypatch):
     monkeypatch.setattr(run_mission, "recording_of", read)
     with click.Context(click.Command("run")):
         with pytest.raises(InputError, match="no reports arrived"):
-            run_mission._read(flown(tmp_path), tmp_path, tmp_path, {})
+            run_mission._read(flown(tmp_path), tmp_path, tmp_path)
         with pytest.raises(KeyboardInterrupt):
-            run_mission._read(flown(tmp_path, summaries_in_files=5), tmp_path, tmp_path, {})
+            run_mission._read(flown(tmp_path, summaries_in_files=5), tmp_path, tmp_path)
     assert asked == [tmp_path]
 
 
@@ -79,7 +88,7 @@ def test_ctrl_c_during_the_verdict_says_how_to_ask_for_it(tmp_path, monkeypatch,
 
 # A node with respawn="true" has no end, and the screen has.
 def test_a_node_that_dies_again_and_again_does_not_fill_the_screen():
-    notes = run_mission._Notes({})
+    notes = run_mission._Notes()
     notes.quiet("no reports yet", False)
     for status in range(1, 51):
         for name in ("camera-1", "arm-2"):

@@ -10,7 +10,9 @@ from mission_samples import comparison, events, key, link_unit, static_info
 from rich.cells import cell_len
 from rich.text import Text
 
-from pytpc.api.live_mission import GraphFeed, RecordedFeed
+from patience import wait_for
+from pytpc.api.graph_feed import GraphFeed
+from pytpc.api.live_mission import RecordedFeed
 from pytpc.api.live_reports import Reports
 from pytpc.diagnosis.ranking.watching import BINS, KeptRankings, Watching
 from pytpc.diagnosis.results.live import Look, Seen
@@ -416,6 +418,7 @@ def test_the_clock_of_a_graph():
         again, _ = feed.take(50 * S)
         assert (again.evaluations, found.evaluations) == (0, 2)
         assert "the clock was set back, so the ranking started again" in feed.fault()
+        wait_for(lambda: feed.is_settled)
         assert "http://127.0.0.1:9 does not answer" in feed.fault()
     finally:
         feed.close()

@@ -197,6 +197,26 @@ def test_components_are_told_apart(
     assert {name for _, name in WANTED} <= ranked
 
 
+# As docs/reference/runtime.md says: settings apply to the whole process, and a component has none.
+def test_the_settings_of_a_container_are_those_of_its_components(
+    cell: Path, peer: Peer, start: Start, tmp_path: Path
+) -> None:
+    container = hold(start, cell, sink="off")
+    load(peer, "Gauge", "front")
+    load(peer, "Gauge", "rear")
+    # The hidden node comes with the first comparison.
+    load(peer, "Pump", "first", listeners=2)
+    settings = f"{CONTAINER}/_tpc"
+    hidden = [one for one in peer.ask("nodes", settings) if one.endswith("/_tpc")]
+    assert hidden == [settings]
+    assert peer.ask("set", settings, sink="file") == [[True, ""]]
+    load(peer, "Pump", "pump", listeners=2)
+    wait_for_reports(tmp_path / "m", cell / "static", 20)
+    end(container)
+    found = compared(read(tmp_path / "m"), cell / "static")
+    assert found == {(node, f"{node}/limits.low"): PRESSURES for node in (FRONT, REAR)}
+
+
 @pytest.mark.parametrize("sink", ["topic", "rosout", "auto"])
 def test_a_listener_hears_the_nodes(cell: Path, peer: Peer, start: Start, sink: str) -> None:
     hold(start, cell, sink=sink)

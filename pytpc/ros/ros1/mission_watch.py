@@ -10,7 +10,7 @@ from pytpc.base.errors import RunError
 from pytpc.base.signals import Stop
 from pytpc.ingest.file_counts import FileCounter, FileCounts
 from pytpc.recording.mission import REPORTS_FOLDER
-from pytpc.ros.mission_run import Progress, RecorderStatus, RecordOptions, read_status
+from pytpc.ros.mission_run import Deaths, Progress, RecorderStatus, RecordOptions, read_status
 from pytpc.ros.ros1.graph import GraphProcess, RosGraph
 from pytpc.ros.ros1.node_output import NodeOutput
 from pytpc.ros.ros1.quiet_graph import QuietWatch
@@ -51,6 +51,7 @@ class MissionWatch:
         self._options = options
         self._stop = stop
         self._began = began
+        self.deaths = Deaths(options.on_died)
         self._quiet = QuietWatch(graph.uri, options.on_quiet, is_own=True)
         self._output = NodeOutput(launched.log)
         self._files = FileCounter(options.out_dir / REPORTS_FOLDER)
@@ -85,9 +86,7 @@ class MissionWatch:
         self._tell_died()
 
     def _tell_died(self) -> None:
-        if self._options.on_died is not None:
-            for died in self._output.died():
-                self._options.on_died(died)
+        self.deaths.see(self._output.died())
 
     def wait_for_parameters(self, trace: Trace | None) -> bool:
         """Wait until roslaunch has set the parameters; it does so before any node runs.

@@ -14,6 +14,7 @@ import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 
 from pytpc.base.errors import MissingToolError, RunError
@@ -26,6 +27,7 @@ from pytpc.ros.folder_lock import alone_in
 from pytpc.ros.mission_run import (
     BAG_FILE,
     DEFAULT_TOPICS,
+    DiedNode,
     MissionRun,
     Progress,
     RecordOptions,
@@ -162,6 +164,7 @@ def run_mission(
             trace, reason = None, _INTERRUPTED_EARLY
         in_files = FileCounter(out_dir / REPORTS_FOLDER).count()
         run = MissionRun.of(status, out_dir, flight.ended, time.monotonic() - began, in_files)
+        run = replace(run, died=flight.died)
         _saved(run, options, trace, reason, install_env)
         if failure is not None:
             raise failure
@@ -184,6 +187,7 @@ class _Flight:
         self._roslaunch: GraphProcess | None = None
         self.is_set_up = False
         self.ended = "interrupted"
+        self.died: tuple[DiedNode, ...] = ()
 
     def run(self, command: list[str], settle_s: float, *, needs_clock: bool) -> None:
         """Run it until the mission ends.
@@ -202,6 +206,7 @@ class _Flight:
             if needs_clock:
                 watch.wait_for_clock()
             self.ended = watch.wait_for_end(settle_s)
+        self.died = watch.deaths.last
 
     def stop(self) -> None:
         """End roslaunch and its nodes."""

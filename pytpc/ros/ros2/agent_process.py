@@ -20,6 +20,7 @@ from typing import IO, Any
 from pytpc.base.errors import MissingToolError, RunError
 from pytpc.ros.ros2 import interpreter
 from pytpc.ros.ros2.address import Ros2Address
+from pytpc.ros.ros2.discovery import Discovery
 from pytpc.ros.source import Source
 
 AT_A_TIME = 16
@@ -34,9 +35,6 @@ _START_S = 30.0
 _ANSWER_S = 10.0
 _END_S = 5.0
 _FOUND_S = 1.5
-_LONG_S = 5.0
-# Where the start took long, so do the answers of others: this many times as long.
-_LONG_STARTS = 10.0
 
 Head = dict[str, Any]
 
@@ -113,8 +111,9 @@ class Agent:
         self._said: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - closed by `close`
         start = time.monotonic()
         self._process = self._started(os.environ if env is None else env)
-        self._began = time.monotonic()
-        self.patience_s = max(_LONG_S, _LONG_STARTS * (self._began - start))
+        began = time.monotonic()
+        self._discovery = Discovery(began, took_s=began - start)
+        self.patience_s = self._discovery.patience_s
         self._thread = threading.Thread(target=self._read, name="agent", daemon=True)
         self._thread.start()
 
@@ -157,11 +156,12 @@ class Agent:
     def wait_for_graph(self, enough: Callable[[Graph], bool] = lambda _: True) -> Graph:
         """The graph, after the time that others have to be found since the agent began.
 
-        If it is not ``enough`` by then, it waits some seconds longer, more on a busy machine.
+        If it is not ``enough`` by then, it waits until `Discovery` says that nobody else is there.
         """
-        self._ended.wait(max(0.0, self._began + _FOUND_S - time.monotonic()))
-        until = self._began + self.patience_s
-        while not enough(self.graph) and time.monotonic() < until and not self._ended.is_set():
+        self._ended.wait(max(0.0, self._discovery.began_s + _FOUND_S - time.monotonic()))
+        while not enough(self.graph) and not self._ended.is_set():
+            if time.monotonic() >= self._discovery.until_s:
+                break
             self._ended.wait(0.1)
         return self.graph
 
@@ -327,6 +327,7 @@ class Agent:
         event = head.pop("ev", "")
         if event == "graph":
             nodes = tuple(head.pop("nodes"))
+            self._discovery.changed_s = time.monotonic()
             self.graph = Graph(nodes, **head)
         elif event == "subscribed":
             number = json.dumps({"m": head["number"]}).encode()

@@ -5,10 +5,18 @@ from __future__ import annotations
 from pytpc.ros.ros2.address import DOMAIN, RANGE, Ros2Address
 from pytpc.ros.ros2.agent_process import Graph
 
+HIDDEN = "/_tpc"
+"""What the name of a node is followed by in that of its hidden node, which has its settings."""
+
 
 def visible(nodes: tuple[str, ...]) -> list[str]:
     """The nodes without hidden ones, such as those of other commands of TPC."""
     return [name for name in nodes if not name.rpartition("/")[2].startswith("_")]
+
+
+def settable(graph: Graph) -> list[str]:
+    """The hidden nodes with the settings of the instrumented ones."""
+    return [name for name in graph.nodes if name.endswith(HIDDEN)]
 
 
 def is_somebody(graph: Graph) -> bool:

@@ -10,11 +10,10 @@ from pytpc.ingest.parameter_events import decode_parameter_event
 from pytpc.python_runtime.config import PARAMETERS
 from pytpc.ros.node_status import NodeStatus, Value, values_of
 from pytpc.ros.ros2.address import Ros2Address
-from pytpc.ros.ros2.agent_process import AT_A_TIME, Agent, Graph
-from pytpc.ros.ros2.found_nodes import nobody, visible
+from pytpc.ros.ros2.agent_process import AT_A_TIME, Agent
+from pytpc.ros.ros2.found_nodes import HIDDEN, nobody, settable, visible
 from pytpc.ros.ros2.parameter_types import type_number
 
-_HIDDEN = "/_tpc"
 _STATUS = "status"
 
 
@@ -36,10 +35,10 @@ class Ros2Nodes:
         Raises:
             RunError: there is no node at all.
         """
-        graph = self._agent.wait_for_graph(lambda graph: bool(_settable(graph)))
+        graph = self._agent.wait_for_graph(lambda graph: bool(settable(graph)))
         if not visible(graph.nodes):
             raise RunError(self._agent.fault or nobody(self._agent.address))
-        return sorted(name[: -len(_HIDDEN)] for name in _settable(graph))
+        return sorted(name[: -len(HIDDEN)] for name in settable(graph))
 
     def set(self, node: str | None, settings: Mapping[str, Value]) -> None:
         """Set parameters of one node, or (None) of all that run."""
@@ -56,7 +55,7 @@ class Ros2Nodes:
                 for name, value in settings.items()
                 for kind in [kinds.get(name) or type_number(value)]
             ]
-            results = self._agent.set(f"{node}{_HIDDEN}", given)
+            results = self._agent.set(f"{node}{HIDDEN}", given)
         except RunError as error:
             self._refused[node] = str(error)
             return
@@ -98,18 +97,14 @@ class Ros2Nodes:
             RunError: it does not answer.
         """
         try:
-            event = decode_parameter_event(self._agent.values(f"{node}{_HIDDEN}"))
+            event = decode_parameter_event(self._agent.values(f"{node}{HIDDEN}"))
         except ValueError as error:
-            raise RunError(f"{node}{_HIDDEN} does not answer: {error}") from error
+            raise RunError(f"{node}{HIDDEN} does not answer: {error}") from error
         return dict(event.values)
 
     def close(self) -> None:
         """Leave the graph."""
         self._agent.close()
-
-
-def _settable(graph: Graph) -> list[str]:
-    return [name for name in graph.nodes if name.endswith(_HIDDEN)]
 
 
 def _as(kind: int, value: Value) -> object:

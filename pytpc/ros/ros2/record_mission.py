@@ -21,6 +21,7 @@ from pytpc.recording.mission import REPORTS_FOLDER
 from pytpc.ros.folder_lock import alone_in
 from pytpc.ros.mission_run import (
     MCAP_FILE,
+    Deaths,
     MissionRun,
     RecordOptions,
     clear_earlier,
@@ -106,7 +107,7 @@ def run_ros2_mission(
         word = "failed" if failure is not None else ended
         wall_s = time.monotonic() - began
         run = MissionRun.of(status, options.out_dir, word, wall_s, watch.counter.count())
-        run = replace(run, bag=options.out_dir / MCAP_FILE)
+        run = replace(run, bag=options.out_dir / MCAP_FILE, died=watch.deaths.last)
         save_run(run, options)
         recording.save_origins(trace, reason, env, is_own=True)
         if failure is not None:
@@ -151,7 +152,8 @@ class _Watch:
 
     def __init__(self, flight: Flight, recording: GraphRecording, options: RecordOptions) -> None:
         self.counter = FileCounter(options.out_dir / REPORTS_FOLDER)
-        self._flight, self._recording, self._options = flight, recording, options
+        self._flight, self._recording = flight, recording
+        self.deaths = Deaths(options.on_died)
         self._counts = FileCounts()
         self._counted = 0.0
         self._seen = 0
@@ -159,9 +161,7 @@ class _Watch:
     def look(self) -> Looked:
         """Tell of deaths; whether all processes have ended, and what they wrote to files."""
         is_over = self._flight.is_over
-        for died in self._flight.look():
-            if self._options.on_died is not None:
-                self._options.on_died(died)
+        self.deaths.see(self._flight.look())
         started = self._flight.started
         if len(started) > self._seen:
             self._recording.command_lines.look(started[self._seen :])
