@@ -24,6 +24,8 @@ _ANSWER_S = 0.1
 # After a signal has shut the context down: usually the process ends now.
 _AGAIN_S = 0.5
 _END_S = 10.0
+# To join the graph takes the interpreter some 10 ms: the program may use them to start.
+_STARTING_S = 0.2
 # How often signals may shut down the context that sends the rest.
 _SIGNALS = 3
 
@@ -59,6 +61,7 @@ class Helper:
 
     def _run(self) -> None:
         try:
+            self._pause(_STARTING_S)
             while not self._is_stopping and os.getpid() == self._process:
                 if self.link is not None:
                     self._turn(self.link)
