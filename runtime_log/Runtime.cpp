@@ -539,9 +539,11 @@ void Runtime::beforeFork() {
   sites().lock();
   ReadNames::all().lock();
   lockThreads();
+  lockStores();
 }
 
 void Runtime::afterFork(bool IsChild) {
+  unlockStores(IsChild);
   unlockThreads();
   ReadNames::all().unlock();
   sites().unlock();

@@ -57,6 +57,12 @@ Sink &topicSink();
 /// Without ROS, reports go nowhere.
 Sink &autoSink();
 
+/// Around fork(), which may happen while another thread holds their locks.
+/// Others are held where these are taken, so they are locked last. What waits
+/// in a child belongs to its parent.
+void lockStores();
+void unlockStores(bool InChild);
+
 } // namespace tpc
 
 #endif // TPC_SINK_H

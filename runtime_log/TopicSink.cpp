@@ -18,7 +18,6 @@
 
 #include <atomic>
 #include <mutex>
-#include <pthread.h>
 #include <unistd.h>
 
 namespace tpc {
@@ -81,12 +80,6 @@ private:
 struct Sinks {
   TopicSink Topic{SinkKind::Topic}, Auto{SinkKind::Auto},
       Rosout{SinkKind::Rosout};
-
-  Sinks() {
-    pthread_atfork([] { all().each(&TopicSink::beforeFork); },
-                   [] { all().each(&TopicSink::afterFork, false); },
-                   [] { all().each(&TopicSink::afterFork, true); });
-  }
 
   template <typename Function, typename... Values>
   void each(Function Call, Values... V) {
@@ -248,7 +241,12 @@ void TopicSink::end() {
 }
 
 void TopicSink::giveTo(LogFile &To) {
-  if (!Something)
+  Thread *T = Something ? ThisThread ? ThisThread : makeThread() : nullptr;
+  if (!T)
+    return;
+  ReportMark Mark(*T);
+  // Within a report, everything waits for the next call.
+  if (!Mark)
     return;
   TopicStore::Batch Batch;
   {
@@ -256,9 +254,7 @@ void TopicSink::giveTo(LogFile &To) {
     Batch = Store.takeAll();
     Something = false;
   }
-  Thread &T = ThisThread ? *ThisThread : *makeThread();
-  if (ReportMark Mark(T); Mark)
-    write(Batch, edgeBit(), rosTimeIsSimulated(), T, To);
+  write(Batch, edgeBit(), rosTimeIsSimulated(), *T, To);
 }
 
 std::string TopicSink::status() const {
@@ -273,5 +269,10 @@ std::string TopicSink::status() const {
 Sink &topicSink() { return Sinks::all().Topic; }
 Sink &autoSink() { return Sinks::all().Auto; }
 Sink &rosoutSink() { return Sinks::all().Rosout; }
+
+void lockStores() { Sinks::all().each(&TopicSink::beforeFork); }
+void unlockStores(bool InChild) {
+  Sinks::all().each(&TopicSink::afterFork, InChild);
+}
 
 } // namespace tpc
