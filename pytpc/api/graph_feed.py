@@ -17,8 +17,6 @@ from pytpc.diagnosis.results.live import Seen
 from pytpc.recording.mission import ReadName
 from pytpc.recording.summaries import Summary
 from pytpc.ros.live_source import reports_at
-from pytpc.ros.ros2.address import Ros2Address, is_ros2
-from pytpc.ros.ros2.found_nodes import nobody
 
 _LOOK_S = 1.0
 _POLL_S = 0.2
@@ -48,11 +46,9 @@ class GraphFeed:
         self._other_clock = 0
         # Not known before the first look.
         self._is_there: bool | None = None
+        self._why_gone = ""
         self._is_heard = False
         self._first_report_until: float | None = None
-        self._gone = f"the ROS master at {master} does not answer"
-        if is_ros2(master):
-            self._gone = nobody(Ros2Address.parse(master))
         self._restarted = ""
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._listen, daemon=True)
@@ -91,7 +87,7 @@ class GraphFeed:
 
     def fault(self) -> str:
         """What is wrong with the connection, and what was broken."""
-        words = [self._gone] if self._is_there is False else []
+        words = [self._why_gone] if self._is_there is False else []
         words += [self._restarted] if self._restarted else []
         if self._reports.malformed:
             words.append(f"{self._reports.malformed:,} broken")
@@ -115,12 +111,17 @@ class GraphFeed:
         try:
             while not self._ended.is_set():
                 for source, data in self._source.poll(_POLL_S):
-                    self._items += self._reports.read(source, data, time.monotonic())
-                self._items += self._reports.due(time.monotonic())
-                self._is_heard = self._is_heard or bool(self._items)
+                    self._add(self._reports.read(source, data, time.monotonic()))
+                self._add(self._reports.due(time.monotonic()))
         finally:
             self._ended.set()
             self._source.close()
+
+    def _add(self, items: Sequence[Item]) -> None:
+        self._items += items
+        # A name may come long before the first report.
+        if any(not isinstance(item, ReadName) for item in items):
+            self._is_heard = True
 
     def _keep_looking(self) -> None:
         """Find new publishers, also at a master that was restarted."""
@@ -128,11 +129,14 @@ class GraphFeed:
             try:
                 self._source.look()
                 self._is_there = True
-            except RunError:
+            except RunError as error:
+                self._why_gone = str(error)
                 self._is_there = False
-            if self._first_report_until is None:
-                patience_s = self._source.patience_s if self._is_there else 0.0
-                self._first_report_until = time.monotonic() + patience_s
+            finally:
+                # Whatever happened: somebody waits for it.
+                if self._first_report_until is None:
+                    patience_s = self._source.patience_s if self._is_there else 0.0
+                    self._first_report_until = time.monotonic() + patience_s
             if self._ended.wait(_LOOK_S):
                 return
 

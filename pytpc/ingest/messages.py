@@ -35,11 +35,12 @@ from pytpc.recording.marks import MarkMessages
 ROSOUT = "/rosout"
 ROSOUT_AGG = "/rosout_agg"
 REPORTS = "/threshold_information"
+BEGIN = b"threshold_"
+"""What every text of a report or summary begins with."""
 _TOPICS: Mapping[Way, str] = {"log": ROSOUT, "aggregate": ROSOUT_AGG}
 
 _PREFIX = PREFIX.encode()
 _BATCH = BATCH_PREFIX.encode()
-_BEGIN = b"threshold_"
 _BEGINNING_NS = 1_000_000_000
 _OTHERS = tuple(prefix.encode() for prefix in (SUMMARY_PREFIX, DROPPED_PREFIX, NAME_PREFIX))
 _WITH_TIME = tuple(b"," + prefix for prefix in _OTHERS)
@@ -177,7 +178,7 @@ class Messages:
         long = logs.msg_end - logs.msg_begin >= len(_PREFIX)
         rows = np.flatnonzero(long)
         first = data[logs.msg_begin[rows, None] + np.arange(len(_PREFIX))]
-        begun = (first[:, : len(_BEGIN)] == np.frombuffer(_BEGIN, np.uint8)).all(axis=1)
+        begun = (first[:, : len(BEGIN)] == np.frombuffer(BEGIN, np.uint8)).all(axis=1)
         reports = begun & (first == np.frombuffer(_PREFIX, np.uint8)).all(axis=1)
         others = np.concatenate([rows[begun & ~reports], np.flatnonzero(~long)])
         for row in np.sort(others).tolist():
@@ -222,7 +223,7 @@ class Messages:
 
     def _text_of(self, log: LogMessage, topic: str, time_ns: int) -> None:
         self._unstamped.see_all([log.node], [time_ns])
-        if not log.msg.startswith(_BEGIN):
+        if not log.msg.startswith(BEGIN):
             return
         way: Way = "log" if topic == ROSOUT else "aggregate"
         if log.msg.startswith(_PREFIX):

@@ -10,6 +10,30 @@ from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
 STORE = get_typestore(Stores.ROS2_HUMBLE)
+LOG = "rcl_interfaces/msg/Log"
+
+
+def ros2_time(seconds: float) -> Any:
+    """A builtin_interfaces/Time."""
+    stamp = ns(seconds)
+    return STORE.types["builtin_interfaces/msg/Time"](sec=stamp // SECOND, nanosec=stamp % SECOND)
+
+
+def _log(seconds: float, node: str, text: str) -> Any:
+    return STORE.types[LOG](
+        stamp=ros2_time(seconds),
+        level=20,
+        name=node,
+        msg=text,
+        file="node.cpp",
+        function="step",
+        line=7,
+    )
+
+
+def log_bytes(seconds: float, node: str, text: str) -> bytes:
+    """A message of /rosout."""
+    return bytes(STORE.serialize_cdr(_log(seconds, node, text), LOG))
 
 
 class Ros2Bag:
@@ -35,28 +59,12 @@ class Ros2Bag:
         raw = STORE.serialize_cdr(message, kind)
         self.writer.write(self.connections[place], ns(seconds), raw)
 
-    @staticmethod
-    def time(seconds: float) -> Any:
-        stamp = ns(seconds)
-        return STORE.types["builtin_interfaces/msg/Time"](
-            sec=stamp // SECOND, nanosec=stamp % SECOND
-        )
-
     def log(self, seconds: float, node: str, text: str, topic: str = "/rosout") -> None:
-        message = STORE.types["rcl_interfaces/msg/Log"](
-            stamp=self.time(seconds),
-            level=20,
-            name=node,
-            msg=text,
-            file="node.cpp",
-            function="step",
-            line=7,
-        )
-        self._write(topic, "rcl_interfaces/msg/Log", seconds, message)
+        self._write(topic, LOG, seconds, _log(seconds, node, text))
 
     def text(self, seconds: float, topic: str, text: str) -> None:
         message = STORE.types["std_msgs/msg/String"](data=text)
         self._write(topic, "std_msgs/msg/String", seconds, message)
 
     def mark(self, seconds: float, topic: str, marked: float) -> None:
-        self._write(topic, "builtin_interfaces/msg/Time", seconds, self.time(marked))
+        self._write(topic, "builtin_interfaces/msg/Time", seconds, ros2_time(marked))

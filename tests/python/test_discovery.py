@@ -4,24 +4,33 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Iterator
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
+from typing import Self, cast
 
 import pytest
 from click.testing import CliRunner
 from mission_samples import comparison, key, link_unit
+from ros2_bags import log_bytes
 
 import pytpc.api.graph_feed
 import pytpc.cli.console
 import pytpc.cli.watch_commands
+import pytpc.ros.ros2.graph_reports
 from patience import PATIENCE_S, wait_for
 from pytpc.api.graph_feed import GraphFeed
 from pytpc.api.live_mission import fresh_watching
+from pytpc.api.live_reports import Item
 from pytpc.base.errors import RunError
 from pytpc.cli.main import main
 from pytpc.diagnosis.question import Question
 from pytpc.ingest.decoders import ROS2
+from pytpc.recording.mission import ReadName
+from pytpc.ros.ros2.address import Ros2Address
+from pytpc.ros.ros2.agent_process import Graph
 from pytpc.ros.ros2.discovery import Discovery
+from pytpc.ros.ros2.graph_reports import Ros2Reports
 from pytpc.ros.ros2.marking import encode_string
 from pytpc.ros.source import Source
 from pytpc.static.static_info import StaticInfo
@@ -30,6 +39,8 @@ GRAPH = "ros2://7"
 NOBODY = "no node in domain 7"
 STATIC = StaticInfo.of([link_unit([comparison(0, "~speed")])])
 REPORTS = Source("/threshold_information", "", "std_msgs/msg/String", "", "")
+ROSOUT = Source("/rosout", "", "rcl_interfaces/msg/Log", "", "")
+NAME = f"#seq:0,count:0,node:/a\n1.0,threshold_name:{key(9)},/a/speed"
 BATCH = f"#seq:0,count:1,node:/a\n1.0,{key(0)},1,cmp:4,thresh:3,res:1"
 
 
@@ -53,19 +64,22 @@ class Late:
 
     def __init__(self) -> None:
         self.is_found, self.reports, self.looks = threading.Event(), threading.Event(), 0
-        self.is_there = True
+        self.fault: Exception | None = None
+        self.text = BATCH
+        self.heard = 0
         self.broken: dict[str, int] = {}
 
     def look(self) -> None:
         self.looks += 1
         self.is_found.wait(PATIENCE_S)
-        if not self.is_there:
-            raise RunError(NOBODY)
+        if self.fault is not None:
+            raise self.fault
 
     def poll(self, timeout_s: float) -> Iterator[tuple[Source, bytes]]:
         if self.reports.wait(timeout_s):
             self.reports.clear()
-            yield REPORTS, encode_string(BATCH)
+            yield REPORTS, encode_string(self.text)
+            self.heard += 1
 
     def close(self) -> None:
         self.is_found.set()
@@ -88,10 +102,25 @@ def feed(graph: Late) -> Iterator[GraphFeed]:
 def test_nobody_is_missed_before_the_graph_was_looked_at(graph: Late, feed: GraphFeed):
     wait_for(lambda: graph.looks == 1)
     assert (feed.fault(), feed.is_settled) == ("", False)
-    graph.is_there = False
+    graph.fault = RunError(NOBODY)
     graph.is_found.set()
     wait_for(lambda: feed.is_settled)
-    assert NOBODY in feed.fault()
+    assert feed.fault() == NOBODY
+
+
+# What the look says is what is wrong, such as the last words of an agent that has ended.
+def test_why_a_graph_cannot_be_looked_at_is_told(graph: Late, feed: GraphFeed):
+    graph.fault = RunError("the node of ROS 2 that pytpc runs has ended: Killed")
+    graph.is_found.set()
+    wait_for(lambda: feed.is_settled)
+    assert feed.fault() == str(graph.fault)
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_nothing_is_waited_for_once_a_look_has_failed(graph: Late, feed: GraphFeed):
+    graph.fault = KeyError("nodes")
+    graph.is_found.set()
+    wait_for(lambda: feed.is_settled)
 
 
 def test_the_first_report_of_a_node_that_was_found_is_waited_for(graph: Late, feed: GraphFeed):
@@ -101,6 +130,99 @@ def test_the_first_report_of_a_node_that_was_found_is_waited_for(graph: Late, fe
     graph.reports.set()
     wait_for(lambda: feed.is_settled)
     assert feed.fault() == ""
+
+
+def test_a_name_is_not_the_first_report(graph: Late, feed: GraphFeed):
+    graph.is_found.set()
+    wait_for(lambda: graph.looks == 2)
+    graph.text = NAME
+    graph.reports.set()
+    wait_for(lambda: graph.heard == 1)
+    (item,) = feed.take(10**9)[1]
+    assert isinstance(item, ReadName)
+    assert not feed.is_settled
+    graph.text = BATCH
+    graph.reports.set()
+    wait_for(lambda: feed.is_settled)
+
+
+class Greedy(deque[Item]):
+    """What waits is taken at once, as if by the other thread."""
+
+    def __iadd__(self, items: Iterable[Item]) -> Self:  # type: ignore[override, misc]
+        super().__iadd__(items)
+        self.clear()
+        return self
+
+
+def test_a_report_is_heard_though_it_was_taken_at_once(graph: Late, feed: GraphFeed):
+    feed._items = Greedy()
+    graph.is_found.set()
+    wait_for(lambda: graph.looks == 2)
+    graph.reports.set()
+    wait_for(lambda: graph.heard == 1)
+    wait_for(lambda: feed.is_settled)
+
+
+class Talking:
+    """An agent with a node that is not instrumented, and logs."""
+
+    patience_s = 20.0
+    fault = ""
+    texts = ("hello", "threshold information is a topic")
+
+    def __init__(self, address: Ros2Address) -> None:
+        self.address = address
+        self.graph = Graph(("/chatty",))
+        self.is_enough: bool | None = None
+
+    def subscribe(self, topic: str, kind: str) -> None:
+        pass
+
+    def poll(self, timeout_s: float) -> Iterator[tuple[Source, int, bytes]]:
+        for text in self.texts:
+            yield ROSOUT, 0, log_bytes(1, "chatty", text)
+
+    def wait_for_graph(self, enough: Callable[[Graph], bool]) -> Graph:
+        self.is_enough = enough(self.graph)
+        return self.graph
+
+
+@pytest.fixture
+def talking(monkeypatch: pytest.MonkeyPatch) -> Ros2Reports:
+    monkeypatch.setattr(pytpc.ros.ros2.graph_reports, "Agent", Talking)
+    return Ros2Reports(Ros2Address("7"))
+
+
+# Nodes that report are looked for until one is found, whatever others log.
+def test_the_logs_of_other_nodes_are_no_reports(talking: Ros2Reports):
+    agent = cast("Talking", talking._agent)
+    assert len(list(talking.poll(0))) == 2
+    talking.look()
+    assert (agent.is_enough, talking.patience_s) == (False, 0)
+
+
+# Its hidden node may be found only after it has been heard.
+def test_a_log_message_of_a_report_is_of_a_node_that_reports(talking: Ros2Reports):
+    agent = cast("Talking", talking._agent)
+    agent.texts = ("hello", f"threshold_information:{key(0)},1,cmp:4,thresh:3,res:1")
+    assert len(list(talking.poll(0))) == 2
+    talking.look()
+    assert (agent.is_enough, talking.patience_s) == (True, 20)
+
+
+def test_an_agent_that_ended_during_the_look_is_told(
+    talking: Ros2Reports, monkeypatch: pytest.MonkeyPatch
+):
+    agent = cast("Talking", talking._agent)
+
+    def end(_: Callable[[Graph], bool]) -> Graph:
+        agent.fault = "has ended"
+        return Graph()
+
+    monkeypatch.setattr(agent, "wait_for_graph", end)
+    with pytest.raises(RunError, match=r"^has ended$"):
+        talking.look()
 
 
 class _NoMarks:

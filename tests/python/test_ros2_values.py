@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 from mission_samples import ns
-from ros2_bags import STORE, Ros2Bag
+from ros2_bags import STORE, Ros2Bag, ros2_time
 
 from pytpc.api.live_reports import Reports
 from pytpc.api.missions import convert
@@ -69,7 +69,7 @@ def event(seconds: float, new: dict[str, Any], changed: dict[str, Any], deleted:
         return [kind(name=name, value=value_of(value)) for name, value in found.items()]
 
     return STORE.types[TYPE](
-        stamp=Ros2Bag.time(seconds),
+        stamp=ros2_time(seconds),
         node="/robot1/guard",
         new_parameters=parameters(new),
         changed_parameters=parameters(changed),

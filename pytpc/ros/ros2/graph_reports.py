@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 from pytpc.base.errors import RunError
 from pytpc.ingest.decoders import ROS2
-from pytpc.ingest.messages import REPORTS, ROSOUT
+from pytpc.ingest.messages import BEGIN, REPORTS, ROSOUT
 from pytpc.ros.ros2.address import Ros2Address
-from pytpc.ros.ros2.agent_process import Agent
+from pytpc.ros.ros2.agent_process import Agent, Graph
 from pytpc.ros.ros2.found_nodes import nobody, settable, visible
 from pytpc.ros.source import Source
 
@@ -25,7 +25,8 @@ class Ros2Reports:
     def __init__(self, address: Ros2Address) -> None:
         """Subscribe."""
         self._agent = Agent(address)
-        self._is_heard = False
+        # By anybody, since the last look; and ever by a node that reports.
+        self._is_heard = self._has_reporter = False
         self._agent.subscribe(ROSOUT, "rcl_interfaces/msg/Log")
         self._agent.subscribe(REPORTS, "std_msgs/msg/String")
 
@@ -38,12 +39,13 @@ class Ros2Reports:
         """Wait for messages and yield those that came."""
         for source, _, data in self._agent.poll(timeout_s):
             self._is_heard = True
+            self._has_reporter = self._has_reporter or _is_of_reporter(source, data)
             yield source, data
 
     @property
     def patience_s(self) -> float:
         """See `LiveSource`."""
-        return self._agent.patience_s if settable(self._agent.graph) else 0.0
+        return self._agent.patience_s if self._is_found(self._agent.graph) else 0.0
 
     def look(self) -> None:
         """See whether anybody is there; the first time, until a node that reports is found.
@@ -51,9 +53,9 @@ class Ros2Reports:
         Raises:
             RunError: nobody is, or the agent has ended.
         """
+        graph = self._agent.wait_for_graph(self._is_found)
         if self._agent.fault:
             raise RunError(self._agent.fault)
-        graph = self._agent.wait_for_graph(lambda graph: self._is_heard or bool(settable(graph)))
         is_heard, self._is_heard = self._is_heard, False
         # Messages may come before the name of who has sent them.
         if not is_heard and not visible(graph.nodes):
@@ -62,3 +64,17 @@ class Ros2Reports:
     def close(self) -> None:
         """Leave the graph."""
         self._agent.close()
+
+    def _is_found(self, graph: Graph) -> bool:
+        """Whether a node that reports is there."""
+        return self._has_reporter or bool(settable(graph))
+
+
+def _is_of_reporter(source: Source, data: bytes) -> bool:
+    """Whether a node that reports has sent it: on /rosout all nodes log."""
+    if source.topic != ROSOUT:
+        return True
+    try:
+        return ROS2.log(data).msg.startswith(BEGIN)
+    except ValueError:
+        return False
