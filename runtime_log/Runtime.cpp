@@ -376,8 +376,11 @@ int64_t Runtime::runDue(int64_t Now) {
     NextRos = After < 0 ? Never : Now + After;
   }
   // A ROS that was loaded, or started, only now may turn out not to work.
-  if (const Config Now = current(); !(possible(Now) == Now))
+  if (Config Now = current(); !(possible(Now) == Now) && !apply(Now)) {
+    // As when the runtime starts: the warning has been given.
+    Now.Sink = SinkKind::Off;
     apply(Now);
+  }
   // ROS knows it only some time after its start, and a program may change it.
   TimeIsSimulated = rosTimeIsSimulated();
   std::lock_guard<std::mutex> Guard(Changing);

@@ -20,8 +20,8 @@ struct Head {
   double Compared, Threshold;
   Site *Of;
   uint64_t Evaluations; ///< for a summary
-  int64_t Steady;
-  uint32_t Length; ///< of the summary
+  int64_t Steady;       ///< of a report
+  uint32_t Length;      ///< of the summary
   bool Guessed;
   LineKind Kind;
   bool Result, Outcome;
@@ -108,7 +108,7 @@ void TopicStore::add(Time When, const Summary &S, bool MayBeShort) {
                S.Threshold,
                &sites()[S.Site],
                S.Count,
-               S.EndSteady,
+               0,
                sizeof(S),
                When.Guessed,
                IsShort ? LineKind::ShortSummary : LineKind::Summary,
