@@ -170,6 +170,7 @@ static json::Value describeTransform(const Transform &T) {
                         {"scale", T.Scale},
                         {"offset", T.Offset},
                         {"text", T.text()}};
+  case Transform::OfParameters:
   case Transform::WithVariables:
     return json::Object{{"kind", "expression"}, {"text", T.text()}};
   case Transform::Expression:

@@ -90,28 +90,61 @@ bool Follower::isOneVariable(const Value *A, const Value *B) const {
          all_of(OfA, [&](const Location &L) { return is_contained(OfB, L); });
 }
 
-/// True if \p A and \p B are the same local variable of the source.
-static bool isSameLocal(const Instruction &A, const Value &B) {
+/// True if \p A and \p B are the same local variable of the source, or the same
+/// part of it.
+static bool isSameLocal(const Value &A, const Value &B) {
   auto Records = variableRecords(const_cast<Value *>(&B));
-  return any_of(variableRecords(const_cast<Instruction *>(&A)),
+  return any_of(variableRecords(const_cast<Value *>(&A)),
                 [&](const DbgVariableRecord *R) {
                   return any_of(Records, [&](const DbgVariableRecord *Other) {
-                    return R->getVariable() == Other->getVariable();
+                    return DebugVariable(R) == DebugVariable(Other);
                   });
                 });
+}
+
+/// True if \p V, a variable that was limited, is only compared, and may limit
+/// others: it is a threshold of its own, and no command.
+static bool isOnlyCompared(const Value &V) {
+  constexpr unsigned Most = 64; // More are no threshold.
+  SmallVector<const Value *, 8> Work{&V};
+  SmallPtrSet<const Value *, 8> Seen;
+  bool IsCompared = false;
+  while (!Work.empty() && Seen.size() < Most) {
+    const Value *Next = Work.pop_back_val();
+    if (!Seen.insert(Next).second)
+      continue;
+    for (const User *U : Next->users()) {
+      const auto *Store = dyn_cast<StoreInst>(U);
+      const auto *Call = dyn_cast<IntrinsicInst>(U);
+      const auto *I = cast<Instruction>(U);
+      if (isa<CmpInst>(U))
+        IsCompared = true;
+      else if (isa<CastInst, UnaryOperator, BinaryOperator>(U) ||
+               (Call && Call->doesNotAccessMemory() &&
+                !Call->getType()->isVoidTy()))
+        Work.push_back(U);
+      else if (isa<PHINode, SelectInst>(U) && !limitedBy(*I).empty()) {
+        // Limited once more, or the limit of another one.
+        if (isSameLocal(*U, *Next))
+          Work.push_back(U);
+      } else if (!Store || !limitedBy(*Store))
+        return false;
+    }
+  }
+  return IsCompared && Work.empty();
 }
 
 /// True if \p Merge takes the smaller or larger of the followed value, for
 /// which \p IsOwn holds, and of a measured variable that it is then stored to,
 /// as in `x = std::min(x, limit)`: what that is compared with later is not
-/// compared with the limit.
+/// compared with the limit. A variable that is only compared is a threshold.
 bool Follower::limitsVariable(const Instruction &Merge,
                               function_ref<bool(const Value *)> IsOwn) {
   if (IsOutcome)
     return false;
   auto IsVariable = [&](const Limited &L) {
     if (isSameLocal(Merge, *L.Compared))
-      return true;
+      return !isOnlyCompared(Merge);
     const auto *Load = dyn_cast<LoadInst>(stripCasts(L.Compared));
     const Value *Of = L.Side->getType()->isPointerTy() ? L.Side
                       : Load ? Load->getPointerOperand()
@@ -119,11 +152,21 @@ bool Follower::limitsVariable(const Instruction &Merge,
     return Of && !Merge.use_empty() &&
            all_of(Merge.users(), [&](const User *U) {
              const auto *Store = dyn_cast<StoreInst>(U);
-             return Store && isOneVariable(Store->getPointerOperand(), Of);
+             return Store && isOneVariable(Store->getPointerOperand(), Of) &&
+                    !isThresholdIn(*Store);
            });
   };
   return any_of(limitedBy(Merge), [&](const Limited &L) {
     return !IsOwn(L.Side) && IsVariable(L) && !Configuration.has(L.Compared);
+  });
+}
+
+/// True if the variable that \p Store writes is only compared.
+bool Follower::isThresholdIn(const StoreInst &Store) {
+  ArrayRef<LoadInst *> Loads =
+      describeStore(const_cast<StoreInst &>(Store)).Loads;
+  return !Loads.empty() && all_of(Loads, [](const LoadInst *Load) {
+    return Load->use_empty() || isOnlyCompared(*Load);
   });
 }
 
@@ -134,7 +177,7 @@ bool Follower::limitsVariable(const StoreInst &Store) {
       Compared ? dyn_cast<LoadInst>(stripCasts(Compared)) : nullptr;
   return Load &&
          isOneVariable(Load->getPointerOperand(), Store.getPointerOperand()) &&
-         !Configuration.has(Load);
+         !Configuration.has(Load) && !isThresholdIn(Store);
 }
 
 /// If a store may write to more variables than this, the points-to analysis has
@@ -173,7 +216,8 @@ void Follower::store(const State &S, StoreInst &Store) {
   if (limitsVariable(Store))
     return;
   const Stored &To = describeStore(Store);
-  if (S.How.Variables && (isMovedOn(Store) || !keepsFormula(To)))
+  if ((S.How.Variables && isMovedOn(Store)) ||
+      (isMeasured(S.How) && !keepsFormula(To)))
     return stopAt(ValueEnd::Mixed, &Store);
   if (To.Targets == 0)
     stopAt(ValueEnd::UnknownPointer, &Store);

@@ -109,6 +109,7 @@ private:
   bool limitsVariable(const llvm::Instruction &Merge,
                       llvm::function_ref<bool(const llvm::Value *)> IsOwn);
   bool limitsVariable(const llvm::StoreInst &Store);
+  bool isThresholdIn(const llvm::StoreInst &Store);
   bool followRepacked(const State &S, llvm::Use &U);
   bool carry(const State &S, llvm::Use &U);
   void load(const State &S, llvm::Instruction &Write,

@@ -2,6 +2,7 @@
 #include "params/Idioms.h"
 
 #include "memory/Variables.h"
+#include "params/Configured.h"
 #include "params/Transform.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
@@ -326,8 +327,9 @@ const Value *limitedBy(const StoreInst &Store) {
   if (!Compare || Compare->isEquality())
     return nullptr;
   for (unsigned N : {0, 1})
-    if (isSameValue(Compare->getOperand(N), Store.getValueOperand(),
-                    /*Across=*/true))
+    // A float is compared as the double that it becomes.
+    if (isSameValue(stripCasts(Compare->getOperand(N)),
+                    stripCasts(Store.getValueOperand()), /*Across=*/true))
       return Compare->getOperand(1 - N);
   return nullptr;
 }

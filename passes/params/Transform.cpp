@@ -33,7 +33,7 @@ std::string shortest(double X) {
 
 Transform::KindTy Transform::kind() const {
   if (Variables)
-    return WithVariables;
+    return Measured ? WithVariables : OfParameters;
   if (Inner)
     return Expression;
   return Scale == 1 && Offset == 0 ? None : Affine;

@@ -29,7 +29,8 @@ struct Application;
 /// The arithmetic between a parameter and a comparison: Scale * inner + Offset,
 /// where inner is x or a function of a transform.
 struct Transform {
-  enum KindTy { None, Affine, Expression, WithVariables };
+  /// Variables that are all configured come before those that are measured.
+  enum KindTy { None, Affine, Expression, OfParameters, WithVariables };
   double Scale = 1, Offset = 0;
   std::shared_ptr<const Application> Inner; ///< null: x itself
   /// The bits of an integer type that the value is known to fit into; 0: none.
@@ -89,7 +90,9 @@ std::optional<Transform> apply(Transform T, const llvm::Instruction &I,
 
 /// True if \p T is a formula with values that may be measured. Other formulas
 /// are thresholds as a parameter is.
-inline bool isMeasured(const Transform &T) { return T.Variables && T.Measured; }
+inline bool isMeasured(const Transform &T) {
+  return T.kind() == Transform::WithVariables;
+}
 
 /// \p T after \p Cast, which can change the value if the new type is narrower,
 /// or holds integers.
