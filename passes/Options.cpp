@@ -151,11 +151,11 @@ bool Options::isUserSource(StringRef Path) const {
   size_t Own = !SourceRoot.empty() && isBelow(Path, SourceRoot)
                    ? StringRef(SourceRoot).rtrim('/').size()
                    : 0;
-  if (!Own && isInstalledWithRos(Path))
+  if (any_of(Excluded, [&](const std::string &F) {
+        return isBelow(Path, F) && StringRef(F).rtrim('/').size() >= Own;
+      }))
     return false;
-  return none_of(Excluded, [&](const std::string &F) {
-    return isBelow(Path, F) && StringRef(F).rtrim('/').size() >= Own;
-  });
+  return Own || !isInstalledWithRos(Path);
 }
 
 std::string Options::relative(StringRef Path) const {

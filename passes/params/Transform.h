@@ -64,7 +64,7 @@ struct Transform {
   /// fit.
   bool isNarrowing() const;
   /// The same for programs (docs/reference/formats.md): a number, "x", or a
-  /// list of an operator and its operands. Not for kind WithVariables, and not
+  /// list of an operator and its operands. Not with Variables, and not
   /// if there is a Part.
   llvm::json::Value tree() const;
 };

@@ -13,6 +13,7 @@ from typing import NamedTuple
 from pytpc.diagnosis.results.live import Seen
 from pytpc.ingest.decoders import ROS1, Decoders
 from pytpc.ingest.losses import LossCounter
+from pytpc.ingest.messages import BEGIN
 from pytpc.ingest.rosout_line import (
     BATCH_PREFIX,
     NAME_PREFIX,
@@ -40,7 +41,6 @@ from pytpc.ros.source import Source
 Item = Seen | Summary | ReadName
 Other = Summary | Drop | Named | Malformed | None
 
-_BEGIN = b"threshold_"
 _HOLD_S = 0.5
 _FORGET_S = 5.0
 
@@ -106,7 +106,7 @@ class Reports:
         log = self._decoders.log(data)
         node = log.node.decode("utf-8", "replace")
         self._counter.see(source.node or node, log.seq, latched=source.latched)
-        if not log.msg.startswith(_BEGIN):
+        if not log.msg.startswith(BEGIN):
             return []
         text = log.msg.decode("utf-8", "replace")
         for line in lines_of(text, log.stamp_ns):
