@@ -98,7 +98,7 @@ struct LightSite {
 
   // The rest is used while the site is locked.
   Countdown Counts[2];
-  layout::Slot In; ///< the sample
+  layout::Slot In = {}; ///< the sample
   layout::Summary &Kept = In.Kept;
   double Least, Most;    ///< of the compared values of the sample
   bool ThresholdMoved;   ///< within the sample
@@ -134,7 +134,12 @@ struct Unlocker {
 } // namespace
 
 void LightSite::clear() {
+  // What has no sample is told with the values of the last one.
+  const layout::Summary Last = Kept;
   In = {};
+  Kept.What = Last.What;
+  Kept.Compared = Last.Compared;
+  Kept.Threshold = Last.Threshold;
   Kept.DiffMin = Kept.Low = Least = HUGE_VAL;
   Kept.DiffMax = Kept.High = Most = -HUGE_VAL;
   Kept.Site = Of.Number;

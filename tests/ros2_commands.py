@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import re
 import signal
 import subprocess
@@ -10,6 +11,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import AbstractContextManager
 from pathlib import Path
+from typing import Any
 
 from patience import PATIENCE_S, wait_for
 from pytpc.base.paths import project_root
@@ -29,7 +31,20 @@ def pytpc(*words: object) -> list[str]:
 
 def told(env: dict[str, str], folder: Path, *words: object, status: int = 0) -> str:
     """What a command says, which ends with this status."""
-    ran = subprocess.run(
+    ran = _ran(env, folder, *words)
+    assert ran.returncode == status, (ran.stdout, ran.stderr)
+    return ran.stdout + ran.stderr
+
+
+def answer(env: dict[str, str], folder: Path, *words: object) -> Any:
+    """What a command answers with ``--json``; what it says beside that depends on the time."""
+    ran = _ran(env, folder, *words, "--json")
+    assert ran.returncode == 0, (ran.stdout, ran.stderr)
+    return json.loads(ran.stdout)
+
+
+def _ran(env: dict[str, str], folder: Path, *words: object) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
         pytpc(*words),
         env=env,
         cwd=folder,
@@ -38,8 +53,6 @@ def told(env: dict[str, str], folder: Path, *words: object, status: int = 0) -> 
         timeout=PATIENCE_S,
         check=False,
     )
-    assert ran.returncode == status, (ran.stdout, ran.stderr)
-    return ran.stdout + ran.stderr
 
 
 @contextlib.contextmanager

@@ -141,12 +141,13 @@ class Program:
         self.static.write_text(json.dumps({"schema": 1, "units": [unit]}))
 
     def start(self, *words: str, plain: bool = False, **env: str) -> subprocess.Popen[str]:
-        """Start it with reports, or ``plain``."""
+        """Start it with reports, or ``plain``; `ended` ends its standard input."""
         more = {"TPC_FOLDER": str(self.reports), "TPC_FILE_RESERVE": "0", **env}
         hook = [] if plain else [RUN, "--static", self.static]
         return subprocess.Popen(
             [PYTHON, *hook, self.path, *words],
             env=ros2_env(self._domain, **more),
+            stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,

@@ -76,7 +76,8 @@ class LightSummary(PeriodSummary):
         whole.passed = self.passed
         if self.passed:
             share = self.count / max(1, self.evaluations)
-            whole.odd = min(self.count, round(self.odd * share))
+            # Without a sample nothing is known of the differences.
+            whole.odd = min(self.count, round(self.odd * share)) if self.evaluations else self.count
             whole.far = min(self.count - whole.odd, round(self.far * share))
             more = (self.count - whole.odd) / max(1, self.evaluations - self.odd)
             whole.total, whole.absolute = self.total * more, self.absolute * more
@@ -160,7 +161,7 @@ class Light:
         # Without a sample there is nothing to say yet.
         if count and not kept.evaluations and not all_of_them:
             return
-        if kept.evaluations:
+        if count:
             kept.end_ns, kept.end_ros_ns = now_ns, ros_ns
             self._catch_up(kept)
             self._sink.summary(kept.scaled())

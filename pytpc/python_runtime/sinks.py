@@ -59,6 +59,8 @@ class PeriodSummary:
         self.one = one
         self.thread = thread
         self.slot = slot
+        self.result = self.res = False
+        self.cmp = self.thresh = 0.0
         self.begin(0, 0, 0)
 
     @property
@@ -67,10 +69,8 @@ class PeriodSummary:
         return 0
 
     def begin(self, period: int, now_ns: int, ros_ns: int) -> None:
-        """A new period, in which nothing was evaluated yet."""
+        """A new period, in which nothing was evaluated yet; the last values stay."""
         self.period = period
-        self.result = self.res = False
-        self.cmp = self.thresh = 0.0
         self.evaluations = self.odd = self.far = self.flops = 0
         self.least = self.low = inf
         self.largest = self.high = -inf

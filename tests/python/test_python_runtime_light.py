@@ -83,6 +83,20 @@ def test_a_period_begins_with_what_is_known_of_the_last(sink):
     assert second.summary.abs_mean == pytest.approx(15.5, rel=0.1)
 
 
+# The process ends a few evaluations after a period began, all of them between two samples.
+def test_what_has_no_sample_when_the_process_ends_is_counted(sink):
+    taken, one = policy(sink), Reported(KEY, 1, False)
+    for number in range(100_003):
+        taken.take(one, False, 1.0, 20.0, False)
+        if number == 99_999:
+            taken.flush(all_of_them=True)
+    taken.flush(all_of_them=True)
+    first, last = sink.read()
+    assert (first.summary.count, last.summary.count) == (100_000, 3)
+    assert (last.seen, last.summary.flops, last.summary.odd) == (0, 0, 3)
+    assert (last.summary.cmp, last.summary.thresh, last.summary.result) == (1.0, 20.0, False)
+
+
 def test_flops_beyond_the_cap_are_counted(sink):
     taken, one = policy(sink, site_cap=3), Reported(KEY, 1, False)
     for number in range(100):

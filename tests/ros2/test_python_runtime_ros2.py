@@ -72,7 +72,8 @@ rclpy.shutdown()
     assert times == sorted(times)
 
 
-# 2,000 evaluations, two outcomes in turn every 100: 0 to 9 are the flops.
+# 2,000 evaluations, two outcomes in turn every 100: 0 to 9 are the flops. The program ends when it
+# was heard: what is not heard goes to a file.
 def test_the_default_sends_flops_and_summaries(domain, tmp_path, listener):
     text = """
 rclpy.init()
@@ -80,14 +81,17 @@ node = Node("usual")
 for number in range(2000):
     high(float(number // 100 % 2 * 10))
     time.sleep(0.001)
+sys.stdin.read()
 """
-    done = Program(tmp_path, domain, text).run()
-    assert (done.returncode, done.stderr) == (0, "")
+    process = Program(tmp_path, domain, text).start()
 
     def counted() -> int:
         lines = [line for batch in listener.batches("/usual") for line in batch.lines]
         return sum(int(line.split(",")[4]) for line in lines if line.startswith("~"))
 
+    wait_for(lambda: counted() > 0)
+    done = ended(process)
+    assert (done.returncode, done.stderr) == (0, "")
     wait_for(lambda: counted() >= 2000)
     assert counted() == 2000
     # The first evaluation, and 19 flops, of which at most 10 in a second are told.

@@ -12,7 +12,16 @@ from patience import PATIENCE_S
 from pytpc.ingest.reading import read
 from pytpc.recording.parameter_values import ParameterValues
 from pytpc.static.static_info import StaticInfo
-from ros2_commands import SOME_REPORTS, interrupted, pytpc, read_until, recorder, running, told
+from ros2_commands import (
+    SOME_REPORTS,
+    answer,
+    interrupted,
+    pytpc,
+    read_until,
+    recorder,
+    running,
+    told,
+)
 from ros2_graph import PYTHON
 from terminals import Terminal
 
@@ -80,7 +89,7 @@ def test_the_value_at_a_time_is_that_of_before_or_after_it_was_set(
         said = told(env, tmp_path, "sink")
         assert "/robot1/guard" in said
         assert "topic" in said
-        found = json.loads(told(env, tmp_path, "sink", "--policy", "edges", "--json"))
+        found = answer(env, tmp_path, "sink", "--policy", "edges")
         assert [(one["node"], one["values"]["policy"]) for one in found] == [
             ("/robot1/guard", "edges")
         ]
@@ -109,7 +118,7 @@ def test_marks_of_two_observers_are_ranked_by(env: dict[str, str], tmp_path: Pat
         process = stack.enter_context(recorder(env, tmp_path, "--static", "static.json"))
         stack.enter_context(guard(env, tmp_path, 50, 600.0, key))
         read_until(process, SOME_REPORTS)
-        found = json.loads(told(env, tmp_path, "watch", "--once", "--seconds", "2", "--json"))
+        found = answer(env, tmp_path, "watch", "--once", "--seconds", "2")
         assert "limits.speed" in json.dumps(found)
         for observer, press in (("ana", "1"), ("ben", "2")):
             command = pytpc("mark", "--observer", observer)
