@@ -18,13 +18,25 @@ from pytpc.build.python_units import (
     named_beside,
     scripts_at,
 )
+from pytpc.processes.corrections import FILE, Corrections, read_corrections
+from pytpc.processes.process import Processes
+from pytpc.processes.processes import find_processes
 from pytpc.python_analysis.budget import SECONDS
 from pytpc.python_analysis.rules_file import Rules
 from pytpc.static.sources import with_source_digests
 from pytpc.static.static_info import StaticInfo
-from pytpc.workspace.colcon import BuildOptions
+from pytpc.workspace.colcon import Bases, BuildOptions
 
-__all__ = ["BuildOptions", "BuildResult", "Collected", "analyse", "build", "collect"]
+__all__ = [
+    "BuildOptions",
+    "BuildResult",
+    "Collected",
+    "Processes",
+    "analyse",
+    "build",
+    "collect",
+    "processes",
+]
 
 Progress = Callable[[int, int], None]
 
@@ -82,3 +94,29 @@ def collect(
     if rules is not None:
         python = analyse_workspaces(sources, rules, on_scripts)
     return collect_sources(sources, on_progress, python)
+
+
+def processes(
+    workspace: Path,
+    base: Path | None = None,
+    corrections: Path | None = None,
+    *,
+    on_progress: Progress | None = None,
+) -> Processes:
+    """Which code of a built workspace runs in one process: programs, libraries and plugins.
+
+    Args:
+        workspace: built by `build`.
+        base: where it was built; None: in its folder ``.tpc``.
+        corrections: a file with what the user knows better; None: the one in the workspace, if any.
+        on_progress: called with (launch files read, all launch files).
+
+    Raises:
+        WorkspaceError: it is not built, or has no packages.
+        InputError: a file of the build or of corrections is broken, or names what is not there.
+    """
+    if corrections is None and (workspace / FILE).is_file():
+        corrections = workspace / FILE
+    known = Corrections() if corrections is None else read_corrections(corrections)
+    bases = None if base is None else Bases(base.absolute())
+    return find_processes(workspace, bases, known, on_progress)

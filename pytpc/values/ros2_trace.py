@@ -129,6 +129,7 @@ def _launch_node(node: Fields) -> LaunchNode:
         Path(place.get("file", "")),
         int(place.get("lineno", 0)),
         0,
+        container=node.get("container", ""),
     )
 
 

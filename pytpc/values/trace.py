@@ -35,7 +35,11 @@ class PackageNotFoundError(InputError):
 
 @dataclass(frozen=True, slots=True)
 class LaunchNode:
-    """A ``<node>`` that would be started: its full name, package, program and tag."""
+    """A ``<node>`` that would be started: its full name, package, program and tag.
+
+    ``args`` are its arguments under ROS 1. Of a component, ``program`` is its class, and
+    ``container`` the full name of the node that loads it.
+    """
 
     name: str
     package: str
@@ -43,6 +47,8 @@ class LaunchNode:
     path: Path
     lineno: int
     offset: int
+    args: str = ""
+    container: str = ""
 
     @classmethod
     def of(cls, fields: Mapping[str, Any]) -> LaunchNode:

@@ -253,26 +253,7 @@ def read_manifest(folder: Path) -> Manifest:
         InputError: it cannot be read as one, with its line where there is one.
         MissingToolError: catkin_pkg is not installed.
     """
-    try:
-        from catkin_pkg.package import InvalidPackage, parse_package_string  # noqa: PLC0415
-    except ImportError as error:
-        raise MissingToolError(
-            f"{sys.executable} has no catkin_pkg; run: {sys.executable} -m pip install catkin_pkg"
-        ) from error
-    path = folder / MANIFEST
-    raw = read_bytes(path)
-    try:
-        expat.ParserCreate().Parse(raw, True)
-        manifest = parse_package_string(raw, filename=str(path), warnings=[])
-        build_type = _evaluated(manifest)
-    except expat.ExpatError as error:
-        what = expat.ErrorString(error.code)
-        raise InputError(
-            f"not XML: {what}, column {error.offset + 1}", path, error.lineno
-        ) from error
-    except (InvalidPackage, ValueError, AssertionError, LookupError) as error:
-        what = getattr(error, "msg", None) or str(error)
-        raise InputError(f"not a package manifest: {what}", path) from error
+    manifest, build_type = _parsed(folder)
     return Manifest(
         manifest.name,
         build_type,
@@ -285,6 +266,48 @@ def read_manifest(folder: Path) -> Manifest:
         _names(manifest.exec_depends),
         _names(manifest.test_depends),
     )
+
+
+def exported_plugins(folder: Path) -> list[tuple[str, str]]:
+    """What the package.xml of a folder exports to pluginlib of ROS 1.
+
+    Returns:
+        For each export the package that has the base class, and the file as it is written, which
+        may begin with ``${prefix}``.
+
+    Raises:
+        InputError, MissingToolError: as `read_manifest`.
+    """
+    manifest, _ = _parsed(folder)
+    return [
+        (one.tagname, one.attributes["plugin"])
+        for one in manifest.exports
+        if one.attributes.get("plugin")
+    ]
+
+
+def _parsed(folder: Path) -> tuple[Any, str]:
+    """The package.xml of a folder as catkin_pkg reads it, conditions evaluated; its build type."""
+    try:
+        from catkin_pkg.package import InvalidPackage, parse_package_string  # noqa: PLC0415
+    except ImportError as error:
+        raise MissingToolError(
+            f"{sys.executable} has no catkin_pkg; run: {sys.executable} -m pip install catkin_pkg"
+        ) from error
+    path = folder / MANIFEST
+    raw = read_bytes(path)
+    try:
+        expat.ParserCreate().Parse(raw, True)
+        manifest = parse_package_string(raw, filename=str(path), warnings=[])
+        return manifest, _evaluated(manifest)
+    except expat.ExpatError as error:
+        what = expat.ErrorString(error.code)
+        raise InputError(
+            f"not XML: {what}, column {error.offset + 1}", path, error.lineno
+        ) from error
+    except (InvalidPackage, ValueError, AssertionError, LookupError) as error:
+        what = getattr(error, "msg", None) or str(error)
+        raise InputError(f"not a package manifest: {what}", path) from error
 
 
 def _evaluated(manifest: Any) -> str:  # noqa: ANN401

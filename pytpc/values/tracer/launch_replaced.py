@@ -85,8 +85,9 @@ def replace_methods(tracer: Tracer) -> None:
         tracer.process(self)
 
     def load(self: Given, _context: Given) -> None:
+        container = tracer.container_of(self._LoadComposableNodes__target_container)
         for one in self._LoadComposableNodes__composable_node_descriptions:
-            tracer.composed(one)
+            tracer.composed(one, container)
 
     Parser.parse_action = parse
     actions, ros = launch.actions, launch_ros.actions

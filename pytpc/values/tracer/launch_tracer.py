@@ -203,6 +203,7 @@ class _Tracer(XmlLoader):  # type: ignore[misc]
             here = self._here(tag, context)
             place = {"path": here["file"], "lineno": here["lineno"], "offset": here["offset"]}
             what = {"name": full, "package": node.package, "program": node.type}
+            what["args"] = node.args or ""
             self.nodes.append({**what, **place})
             if not node.machine_name:
                 self.programs[node.package, node.type] = None

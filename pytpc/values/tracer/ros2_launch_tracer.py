@@ -308,7 +308,14 @@ class Tracer:
         if not step.get("inline"):
             self.files[step["file"]] = None
 
-    def composed(self, description: Given) -> None:
+    def container_of(self, given: Given) -> str:
+        """The full name of a container, which is an action or a name."""
+        name = getattr(given, "node_name", None)
+        name = self._text(given) if name is None else str(name)
+        name = name.replace("<node_namespace_unspecified>", "")
+        return name if name.startswith("/") else f"/{name}"
+
+    def composed(self, description: Given, container: str) -> None:
         """Note what a node in a container is given; launch itself reads its params files."""
         condition = description.condition()
         if condition is not None and not condition.evaluate(self.context):
@@ -332,6 +339,7 @@ class Tracer:
             self._read_file(step)
         plugin = self._text(description.node_plugin).rpartition("::")[2]
         self._add(description, (f"{namespace}/{name or plugin}", bool(name)), steps)
+        self.nodes[-1]["container"] = container
 
 
 def _ros_arguments(words: list[str]) -> tuple[list[dict[str, Given]], dict[str, str]]:

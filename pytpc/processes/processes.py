@@ -1,0 +1,297 @@
+"""The processes of a built workspace: which code runs in one address space.
+
+A parameter may be read in one library, compared in a second and act in a third. What belongs
+together is known from the built files (which libraries each needs, which base classes it loads
+plugins of), from the declarations of plugins, and from what launch files and parameters name.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from pytpc.base.errors import WorkspaceError
+from pytpc.base.paths import ROS_PREFIXES
+from pytpc.build.nodes_env import nodes_env
+from pytpc.build.reconcile import Recorded, build_folders, recorded_units
+from pytpc.processes.binaries import Binary, Libraries, cyclic_needs, system_folders
+from pytpc.processes.corrections import Corrected, Corrections
+from pytpc.processes.plugins import Plugin, declared_plugins
+from pytpc.processes.process import Choice, Process, Processes, Unit
+from pytpc.processes.starts import Start, read_starts
+from pytpc.static.link_unit import LinkUnit
+from pytpc.static.static_info import StaticInfo
+from pytpc.workspace.colcon import Bases
+from pytpc.workspace.packages import find_packages
+
+_PATHS = ("CMAKE_PREFIX_PATH", "AMENT_PREFIX_PATH")
+Progress = Callable[[int, int], None]
+
+
+def find_processes(
+    workspace: Path,
+    bases: Bases | None = None,
+    corrections: Corrections | None = None,
+    on_progress: Progress | None = None,
+) -> Processes:
+    """The processes of a workspace that `pytpc build` has built.
+
+    Args:
+        workspace: the folder of the workspace.
+        bases: where it was built; None: in its folder ``.tpc``.
+        corrections: what the user says of some programs.
+        on_progress: called with (launch files read, all launch files).
+
+    Raises:
+        WorkspaceError: it is not built, or has no packages.
+        InputError: a file of the build is broken, or a correction names what is not there.
+    """
+    bases = Bases.of(workspace) if bases is None else bases
+    if not bases.static_info.is_file():
+        raise WorkspaceError("not built with TPC yet; build it with: pytpc build", workspace)
+    packages = find_packages(workspace)
+    static = StaticInfo.load(bases.static_info)
+    env = nodes_env(workspace)
+    built = _built(bases, static)
+    prefixes = _prefixes(env)
+    libraries = Libraries(
+        {name: path for path in built for name in _names(path)}, system_folders(env, prefixes)
+    )
+    declared = declared_plugins(packages, prefixes, libraries.ours)
+    wanted = frozenset(name for plugin in declared.plugins for name in plugin.names)
+    starts: tuple[Start, ...] = ()
+    unread: Mapping[Path, str] = {}
+    if wanted:
+        read = read_starts(env, packages, wanted, on_progress)
+        starts, unread = read.found, read.unread
+    finder = _Finder(
+        libraries,
+        built,
+        {(one.package, one.link_unit): one for one in static.units},
+        declared.plugins,
+        starts,
+        prefixes,
+    )
+    found = finder.all(corrections or Corrections())
+    cycle = cyclic_needs(one for path in built if (one := libraries.binary(path)))
+    faults = [*declared.faults]
+    if cycle:
+        faults.append(f"libraries need one another in a circle: {' -> '.join(cycle)}")
+    return Processes(tuple(found), tuple(faults), unread)
+
+
+def _built(bases: Bases, static: StaticInfo) -> dict[Path, Unit]:
+    """The files of the workspace's link units, without tests."""
+    counts = {
+        (one.package, one.link_unit): one.counts.functions
+        for one in static.units
+        if one.status == "ok" and not one.is_python
+    }
+    found = {}
+    for recorded in _recorded(bases):
+        key = recorded.package, recorded.name
+        is_wanted = recorded.static_info.is_file() or not recorded.left_out.startswith(
+            "it is a test"
+        )
+        if recorded.artifact.is_file() and is_wanted:
+            path = recorded.artifact.absolute()
+            found[path] = Unit(*key, path, counts.get(key))
+    return found
+
+
+def _recorded(bases: Bases) -> Iterator[Recorded]:
+    for folder in build_folders(bases.build):
+        yield from recorded_units(folder) or ()
+
+
+def _names(path: Path) -> set[str]:
+    """What programs that need a library may call it."""
+    binary = Libraries({}).binary(path)
+    return {path.name} if binary is None else {path.name, binary.soname}
+
+
+def _prefixes(env: Mapping[str, str]) -> list[Path]:
+    named = [Path(one) for name in _PATHS for one in env.get(name, "").split(os.pathsep) if one]
+    return list(dict.fromkeys((*named, *ROS_PREFIXES)))
+
+
+@dataclass(slots=True)
+class _Finder:
+    """Puts programs, libraries, plugins and starts together."""
+
+    libraries: Libraries
+    built: Mapping[Path, Unit]
+    units: Mapping[tuple[str, str], LinkUnit]
+    plugins: Sequence[Plugin]
+    starts: Sequence[Start]
+    prefixes: Sequence[Path]
+
+    def all(self, corrections: Corrections) -> list[Process]:
+        """All processes, sorted by name."""
+        hosts: dict[str, Path | None] = {
+            f"{unit.package}/{unit.name}": path
+            for path, unit in self.built.items()
+            if (binary := self.libraries.binary(path)) is not None and binary.is_program
+        }
+        own = {unit.package for unit in self.built.values()}
+        for start in self.starts:
+            if start.program and start.program.partition("/")[0] not in own:
+                host = self._of_system(start.program)
+                if host is not None or start.loads:
+                    hosts[start.program] = host
+        found = []
+        for program, host in sorted(hosts.items()):
+            corrected = corrections.of(program)
+            if corrected is not None:
+                found += [self._corrected(program, host, one, corrections) for one in corrected]
+            else:
+                found += self._of(program, host)
+        corrections.refuse_unknown(hosts)
+        return sorted(found, key=lambda process: process.name)
+
+    def _of_system(self, program: str) -> Path | None:
+        places = (prefix / "lib" / program for prefix in self.prefixes)
+        return next((one.resolve() for one in places if one.is_file()), None)
+
+    def _of(self, program: str, host: Path | None) -> list[Process]:
+        """The processes of a program: one for each set of plugins that it is started with."""
+        own = [start for start in self.starts if start.program == program]
+        files = [start for start in self.starts if not start.program]
+        found: dict[frozenset[Plugin], Process] = {}
+        ways: list[Start | None] = [*own] if own else [None]
+        for start in ways:
+            self._add(found, self._process(program, host, start))
+        asked = {choice.base for process in found.values() for choice in process.choices}
+        for file in files:
+            names = {one for one in self.plugins if one.base in asked and one.names & file.words}
+            if names:
+                self._add(found, self._process(program, host, file))
+        if not own and len(found) > 1:
+            # What a file names takes the place of the defaults.
+            found = {key: one for key, one in found.items() if one.starts}
+        processes = [one for one in found.values() if host in self.built or one.units]
+        return _named(processes, program)
+
+    @staticmethod
+    def _add(found: dict[frozenset[Plugin], Process], process: Process) -> None:
+        key = frozenset(process.plugins)
+        before = found.setdefault(key, process)
+        if before is not process:
+            found[key] = replace(before, starts=(*before.starts, *process.starts))
+
+    def _process(self, program: str, host: Path | None, start: Start | None) -> Process:
+        loads = frozenset[str]() if start is None else start.loads
+        choices = {
+            base: Choice(base, tuple(plugins), "launch")
+            for base, plugins in self._by_base(loads).items()
+        }
+
+        def choose(binaries: Sequence[Binary]) -> Iterator[Path]:
+            for base in sorted({base for binary in binaries for base in binary.asks}):
+                if base not in choices:
+                    choices[base] = self._choice(base, binaries, start)
+            for choice in choices.values():
+                yield from (plugin.library for plugin in choice.plugins)
+
+        units = self._loaded(host, choose)
+        kept = tuple(choice for choice in choices.values() if choice.plugins)
+        return Process(program, program, host, units, kept, () if start is None else (start,))
+
+    def _by_base(self, names: frozenset[str]) -> dict[str, list[Plugin]]:
+        found: dict[str, list[Plugin]] = {}
+        for plugin in self.plugins:
+            if plugin.names & names:
+                found.setdefault(plugin.base, []).append(plugin)
+        return found
+
+    def _loaded(
+        self, host: Path | None, more: Callable[[Sequence[Binary]], Iterable[Path]]
+    ) -> tuple[Unit, ...]:
+        """The units of a process; ``more`` says what else the code that is there loads."""
+        first = [] if host is None else [host]
+        while True:
+            binaries = self.libraries.all_of(first)
+            own = [one for one in binaries if one.path in self.built or one.path == host]
+            named = {path for one in own for path in self._named_by(one)}
+            there = {one.path for one in binaries}
+            wanted = dict.fromkeys((*more(binaries), *sorted(named)))
+            new = [path for path in wanted if path not in there]
+            if not new:
+                return tuple(self.built[one.path] for one in binaries if one.path in self.built)
+            first += new
+
+    def _named_by(self, binary: Binary) -> Iterator[Path]:
+        """Libraries of the workspace that code loads by the names of their files."""
+        names = self.libraries.ours.keys() - {binary.soname, binary.path.name, *binary.needed}
+        for name in binary.texts(names):
+            yield self.libraries.ours[name]
+
+    def _choice(self, base: str, binaries: Sequence[Binary], start: Start | None) -> Choice:
+        candidates = [plugin for plugin in self.plugins if plugin.base == base]
+        words = frozenset() if start is None else start.words
+        named = [plugin for plugin in candidates if plugin.names & words]
+        # A file alone does not say which parameters it sets.
+        is_file = start is not None and not start.program
+        defaults = [] if named and is_file else self._defaults(candidates, binaries)
+        if defaults:
+            for plugin, parameter in defaults:
+                if plugin not in named and not (start is not None and start.sets(parameter)):
+                    named.append(plugin)
+            why = "parameters" if words & {name for one in named for name in one.names} else "code"
+            return Choice(base, _in_order(candidates, named), why)
+        if named:
+            return Choice(base, _in_order(candidates, named), "parameters")
+        texts = frozenset(name for plugin in candidates for name in plugin.names)
+        of_code = [one for one in binaries if one.path in self.built]
+        there = frozenset().union(*(one.texts(texts) for one in of_code)) if texts else frozenset()
+        named = [plugin for plugin in candidates if plugin.names & there]
+        return Choice(base, tuple(named or candidates), "code" if named else "all")
+
+    def _defaults(
+        self, candidates: Sequence[Plugin], binaries: Sequence[Binary]
+    ) -> list[tuple[Plugin, str]]:
+        """Plugins that are defaults of parameters of this code, each with the parameter."""
+        by_name = {name: plugin for plugin in candidates for name in plugin.names}
+        units = [self.built[one.path] for one in binaries if one.path in self.built]
+        return [
+            (by_name[read.default], read.name)
+            for unit in units
+            if (known := self.units.get((unit.package, unit.name))) is not None
+            for read in known.parameters
+            if isinstance(read.default, str) and read.default in by_name
+        ]
+
+    def _corrected(
+        self, program: str, host: Path | None, given: Corrected, corrections: Corrections
+    ) -> Process:
+        plugins = [corrections.plugin(one, self.plugins) for one in given.plugins]
+        extra = [corrections.library(one, self.libraries.ours) for one in given.libraries]
+        wanted = [*(plugin.library for plugin in plugins), *extra]
+        units = self._loaded(host, lambda _binaries: wanted)
+        bases = dict.fromkeys(plugin.base for plugin in plugins)
+        choices = tuple(
+            Choice(base, tuple(one for one in plugins if one.base == base), "corrected")
+            for base in bases
+        )
+        return Process(given.name or program, program, host, units, choices)
+
+
+def _in_order(candidates: Sequence[Plugin], named: Sequence[Plugin]) -> tuple[Plugin, ...]:
+    return tuple(plugin for plugin in candidates if plugin in named)
+
+
+def _named(processes: Sequence[Process], program: str) -> list[Process]:
+    """The processes of one program under names of their own: after what starts them."""
+    if len(processes) < 2:
+        return list(processes)
+    taken: dict[str, int] = {}
+    found = []
+    for process in processes:
+        by = process.starts[0].path.name.partition(".")[0] if process.starts else "default"
+        name = f"{program}@{by}"
+        taken[name] = taken.get(name, 0) + 1
+        number = f"-{taken[name]}" if taken[name] > 1 else ""
+        found.append(replace(process, name=f"{name}{number}"))
+    return found
