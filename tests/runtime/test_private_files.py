@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import stat
 import subprocess
@@ -65,17 +66,19 @@ def test_modes(node: Node, tmp_path: Path) -> None:
 
 @pytest.fixture
 def private() -> Iterator[Path]:
-    """The folder that is used without a home."""
+    """The folder that is used without a home; one test at a time has it."""
     folder = Path(f"/tmp/tpc-{os.geteuid()}")
-    if folder.exists() or folder.is_symlink():
-        pytest.skip(f"{folder} is there")
-    yield folder
-    if folder.is_symlink():
-        folder.unlink()
-    elif folder.exists():
-        for path in folder.iterdir():
-            path.unlink()
-        folder.rmdir()
+    with Path(f"{folder}-of-tests.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if folder.exists() or folder.is_symlink():
+            pytest.skip(f"{folder} is there")
+        yield folder
+        if folder.is_symlink():
+            folder.unlink()
+        elif folder.exists():
+            for path in folder.iterdir():
+                path.unlink()
+            folder.rmdir()
 
 
 def test_without_a_home(node: Node, private: Path) -> None:
