@@ -121,6 +121,25 @@ def test_setup_refuses_a_level_that_it_does_not_know():
     assert ran.stderr == "setup: error: no level 'everything': user, demo, test or ros2\n"
 
 
+# Without a node in C++, the demonstration on ROS 2 needs neither a compiler nor ROS 1.
+@pytest.mark.parametrize("has_rclcpp", [False, True])
+def test_ros2_without_rclcpp_needs_no_compiler(tmp_path, has_rclcpp):
+    tools = tmp_path / "tools"
+    tools.mkdir()
+    setup = Path(shutil.copy(ROOT / "tools/setup", tools))
+    install = tools / "install-packages"
+    install.write_text('#!/bin/sh\nshift\necho "$@" >asked\nexit 1\n')
+    install.chmod(0o755)
+    prefix = tmp_path / "ros"
+    if has_rclcpp:
+        (prefix / "share/rclcpp").mkdir(parents=True)
+        (prefix / "share/rclcpp/package.xml").touch()
+    env = {"AMENT_PREFIX_PATH": f"/none:{prefix}"}
+    assert subprocess.run([setup, "ros2"], env=env, cwd=tmp_path, check=False).returncode == 1
+    name = "debian-packages.txt" if has_rclcpp else "debian-packages-ros2.txt"
+    assert (tmp_path / "asked").read_text() == f"tools/{name}\n"
+
+
 def test_one_version_everywhere():
     version = (ROOT / "VERSION").read_text().strip()
     assert re.fullmatch(r"\d+\.\d+\.\d+", version)
