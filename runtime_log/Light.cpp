@@ -387,16 +387,18 @@ template <typename F> static void forEachLight(F Visit) {
       Visit(*L);
 }
 
-void beginLight() {
+void beginLight(bool Forgets) {
   Began.Steady = Clock::now();
   Began.Ros = rosTime();
-  forEachLight([](LightSite &L) {
+  forEachLight([&](LightSite &L) {
     if (!L.lock())
       return;
     Unlocker Guard{L};
+    L.Told = -1;
+    if (!Forgets)
+      return;
     L.settle();
     L.clear();
-    L.Told = -1;
     L.BeginSteady = Began.Steady;
     L.BeginRos = Began.Ros;
   });

@@ -28,8 +28,9 @@ void light(Thread &T, Site &S, const Report &R, const char *Key,
 /// of log_one that do not look at SiteWords themselves.
 bool isPassedOver(const Site &S, bool Result);
 
-/// Begins the first period: what was counted before is forgotten.
-void beginLight();
+/// Begins the first period for a new sink. With \p Forgets, what was counted
+/// before is forgotten: it was while another policy held.
+void beginLight(bool Forgets);
 
 /// Ends a period: passes the summaries to \p To and begins a new period.
 /// Returns how many there were. With \p IsEnd, also counts what has no sample.

@@ -245,8 +245,9 @@ bool Runtime::choose(const Config &C) {
   Sink *Old = NowSink.exchange(&sinkOf(C.Sink));
   bool IsCapped = SiteCap || ProcessCap;
   bool IsLight = Filled.Policy == Policy::Light && C.Sink != SinkKind::Off;
+  // What was evaluated since the flush is still to be told.
   if (IsLight)
-    beginLight();
+    beginLight(/*Forgets=*/NowMode.load() != Mode::Light);
   NowMode = C.Sink == SinkKind::Off          ? Mode::Off
             : IsLight                        ? Mode::Light
             : Filled.Policy == Policy::Edges ? Mode::Edges
