@@ -18,7 +18,7 @@ from pytpc.build.python_units import (
     named_beside,
     scripts_at,
 )
-from pytpc.processes.corrections import FILE, Corrections, read_corrections
+from pytpc.processes.corrections import FILE, Corrections, read_corrections, write_corrections
 from pytpc.processes.process import Processes
 from pytpc.processes.processes import find_processes
 from pytpc.python_analysis.budget import SECONDS
@@ -36,6 +36,7 @@ __all__ = [
     "build",
     "collect",
     "processes",
+    "write_corrections",
 ]
 
 Progress = Callable[[int, int], None]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -9,7 +10,7 @@ import click
 from rich.padding import Padding
 from rich.text import Text
 
-from pytpc.api.building import Processes, processes
+from pytpc.api.building import Processes, processes, write_corrections
 from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import JSON, PATH
 from pytpc.cli.console import Advance, console, print_json, progress, tell_next, warn
@@ -22,19 +23,23 @@ from pytpc.present.process_list import processes_as_json, processes_as_yaml, wor
 @click.option(
     "--corrections",
     type=PATH,
-    help="What you know better. [default: WORKSPACE/tpc-processes.yaml, if it is there]",
+    help="File of corrections. [default: WORKSPACE/tpc-processes.yaml, if it is there]",
 )
-@click.option("--yaml", "as_file", is_flag=True, help="Print a file of corrections to begin with.")
+@click.option(
+    "--write", is_flag=True, help="Write what is found to WORKSPACE/tpc-processes.yaml, to edit it."
+)
 @JSON
 def processes_command(
-    workspace: Path, base: Path | None, corrections: Path | None, as_file: bool, as_json: bool
+    workspace: Path, base: Path | None, corrections: Path | None, write: bool, as_json: bool
 ) -> None:
     """Show which code of WORKSPACE runs in one process: programs, their libraries and plugins.
 
     The plugins of a program are those that launch files and parameters name; else the defaults in
     its code; else all that it could load. A program that is started with several sets of plugins is
-    several processes. To correct what is shown: `pytpc processes --yaml > tpc-processes.yaml`.
+    several processes. To correct what is shown, use --write, and edit the file.
     """
+    if write and as_json:
+        raise click.UsageError("--write and --json cannot be combined")
     with ExitStack() as stack:
         shown: list[Advance] = []
 
@@ -48,16 +53,16 @@ def processes_command(
         warn(fault)
     if as_json:
         print_json(processes_as_json(found))
-    elif as_file:
-        click.echo(processes_as_yaml(found), nl=False)
+    elif write:
+        click.echo(f"written: {write_corrections(workspace, processes_as_yaml(found))}")
     else:
-        _show(found)
+        _show(found, workspace)
 
 
 COMMANDS: list[click.Command] = [processes_command]
 
 
-def _show(found: Processes) -> None:
+def _show(found: Processes, workspace: Path) -> None:
     joined = [one for one in found.found if one.is_joined]
     alone = [one.name for one in found.found if not one.is_joined]
     out = console()
@@ -70,11 +75,12 @@ def _show(found: Processes) -> None:
             out.print(Padding(line, (0, 0, 0, 2), expand=False))
     if alone:
         words = many(len(alone), "program")
-        click.echo(f"{words} with one analysed link unit: {', '.join(alone)}")
+        click.echo(f"{words} without code of several analysed link units: {', '.join(alone)}")
     if not found.found:
-        click.echo("no program of this workspace was built")
+        click.echo(f"no program was built; pytpc build {shlex.quote(str(workspace))} says more")
     for path, why in list(found.unread.items())[:1]:
         others = f" (and {len(found.unread) - 1} more)" if len(found.unread) > 1 else ""
         warn(f"{path} cannot be read{others}, so it was only searched for names: {why}")
     if joined:
-        tell_next("pytpc processes --yaml > tpc-processes.yaml, if something is wrong or missing")
+        place = shlex.quote(str(workspace))
+        tell_next(f"pytpc processes {place} --write, if something is wrong or missing")

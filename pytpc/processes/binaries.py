@@ -7,11 +7,13 @@ import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 
 from elftools.common.exceptions import ELFError
 from elftools.elf.dynamic import DynamicSegment
 from elftools.elf.elffile import ELFFile
+from elftools.elf.sections import SymbolTableSection
 
 from pytpc.workspace.packages import find_cycle
 
@@ -19,6 +21,7 @@ from pytpc.workspace.packages import find_cycle
 _LOADER = re.compile(rb"9pluginlib11ClassLoaderI")
 _COMPONENT_MANAGER = re.compile(rb"17rclcpp_components16ComponentManager")
 _PART = re.compile(rb"(\d{1,3})")
+_LITERAL = re.compile(rb"(?<=\0)[!-~]{3,200}(?=\0)")
 _LONGEST_NAME = 1024
 COMPONENT = "rclcpp_components::NodeFactory"
 """What a container of components asks for, as if it were a base class."""
@@ -42,13 +45,44 @@ class Binary:
 
     def texts(self, wanted: Iterable[str]) -> frozenset[str]:
         """Those of these texts that are string literals of its code."""
-        with _mapped(self.path) as content:
-            return frozenset(
-                text
-                for text in wanted
-                # Linkers merge a literal with the end of a longer one.
-                if content.find(b"\0" + text.encode() + b"\0") >= 0
-            )
+        return literals(self.path).intersection(wanted)
+
+
+@lru_cache(maxsize=4096)
+def literals(path: Path) -> frozenset[str]:
+    """The string literals of a program or library that may be names; none if it cannot be read.
+
+    Of those that a linker has merged with the end of a longer one, the longer one counts.
+    """
+    try:
+        with path.open("rb") as stream:
+            parts = [
+                section.data()
+                for section in ELFFile(stream).iter_sections("SHT_PROGBITS")
+                if section.name.startswith(".rodata")
+            ]
+    except (OSError, ValueError, ELFError):
+        return frozenset()
+    return frozenset(
+        text.decode("ascii") for part in parts for text in _LITERAL.findall(b"\0" + part)
+    )
+
+
+@lru_cache(maxsize=4096)
+def symbols(path: Path) -> tuple[frozenset[str], frozenset[str]]:
+    """The names that a file defines for others, and those that it takes from others."""
+    defined: set[str] = set()
+    taken: set[str] = set()
+    try:
+        with path.open("rb") as stream:
+            for section in ELFFile(stream).iter_sections("SHT_DYNSYM"):
+                if isinstance(section, SymbolTableSection):
+                    for symbol in section.iter_symbols():
+                        is_taken = symbol["st_shndx"] == "SHN_UNDEF"
+                        (taken if is_taken else defined).add(symbol.name)
+    except (OSError, ValueError, ELFError):
+        pass
+    return frozenset(defined), frozenset(taken)
 
 
 def read_binary(path: Path) -> Binary | None:
@@ -62,7 +96,9 @@ def read_binary(path: Path) -> Binary | None:
             for segment in elf.iter_segments("PT_DYNAMIC"):
                 if isinstance(segment, DynamicSegment):
                     _read_tags(segment, tags)
-            is_program = any(one["p_type"] == "PT_INTERP" for one in elf.iter_segments())
+            is_program = elf["e_type"] == "ET_EXEC" or any(
+                one["p_type"] == "PT_INTERP" for one in elf.iter_segments()
+            )
         folders = [one for text in _both(tags, "runpath", "rpath") for one in text.split(":")]
         with _mapped(path) as content:
             asks = frozenset(_asked(content))

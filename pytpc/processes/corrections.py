@@ -6,14 +6,15 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from pytpc.base.atomic import write_atomic
 from pytpc.base.closest import did_you_mean
 from pytpc.base.errors import InputError
 from pytpc.base.source_bytes import read_bytes
 from pytpc.processes.plugins import Plugin
+from pytpc.processes.starts import FILE
 from pytpc.values.yaml_tree import YamlNode, read_yaml
 
-FILE = "tpc-processes.yaml"
-"""The name of the file, in the folder of the workspace."""
+__all__ = ["FILE", "Corrected", "Corrections", "Named", "read_corrections", "write_corrections"]
 _LISTS = ("plugins", "libraries")
 
 
@@ -56,7 +57,9 @@ class Corrections:
         for program in self.programs:
             if program not in there:
                 hint = did_you_mean(program, there)
-                raise InputError(f"no program {program}{hint}", self.path, self.lines[program])
+                raise InputError(
+                    f"no program {program} was built{hint}", self.path, self.lines[program]
+                )
 
     def plugin(self, given: Named, known: Sequence[Plugin]) -> Plugin:
         """The plugin of that name or class.
@@ -68,7 +71,7 @@ class Corrections:
             if given.text in plugin.names:
                 return plugin
         hint = did_you_mean(given.text, (plugin.name for plugin in known))
-        raise InputError(f"no plugin {given.text}{hint}", self.path, given.line)
+        raise InputError(f"no package declares a plugin {given.text}{hint}", self.path, given.line)
 
     def library(self, given: Named, known: Mapping[str, Path]) -> Path:
         """The library of the workspace whose file has that name.
@@ -78,7 +81,7 @@ class Corrections:
         """
         if given.text not in known:
             hint = did_you_mean(given.text, known)
-            raise InputError(f"no library {given.text}{hint}", self.path, given.line)
+            raise InputError(f"no library {given.text} was built{hint}", self.path, given.line)
         return known[given.text]
 
 
@@ -121,6 +124,8 @@ def _corrected(node: YamlNode, path: Path) -> Corrected:
     lists: dict[str, tuple[Named, ...]] = dict.fromkeys(_LISTS, ())
     for key, value in _pairs(node, path):
         if key.text == "name":
+            if value.behind.kind != "scalar":
+                raise InputError("a name is expected", path, value.lineno)
             name = value.behind.text
         elif key.text in lists:
             lists[key.text] = _texts(value.behind, path)
@@ -134,3 +139,19 @@ def _texts(node: YamlNode, path: Path) -> tuple[Named, ...]:
     if node.kind != "list" or any(one.behind.kind != "scalar" for one in node.items):
         raise InputError("a list of names is expected", path, node.lineno)
     return tuple(Named(one.behind.text, one.lineno) for one in node.items)
+
+
+def write_corrections(workspace: Path, text: str) -> Path:
+    """Write the file of a workspace that has none.
+
+    Raises:
+        InputError: there is one, or it cannot be written.
+    """
+    path = workspace / FILE
+    if path.exists():
+        raise InputError("is there already; edit it, or remove it first", path)
+    try:
+        write_atomic(path, text.encode())
+    except OSError as error:
+        raise InputError(f"cannot be written: {error.strerror}", path) from error
+    return path

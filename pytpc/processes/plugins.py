@@ -6,6 +6,7 @@ the index of resources of ROS 2. Components of rclcpp: the same index.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -19,6 +20,7 @@ from pytpc.workspace.packages import MANIFEST, Package, exported_plugins
 _INDEX = Path("share/ament_index/resource_index")
 _PLUGIN_ENDING = "__pluginlib__plugin"
 _COMPONENTS = "rclcpp_components"
+_PYTHON = re.compile(r"_py::")
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +83,9 @@ class _Reader:
         for file in (f"{name}.so", f"lib{name}.so"):
             if file in self.libraries:
                 return self.libraries[file]
-        self.fault(f"no library {written} was built", path, line)
+        self.fault(
+            f"no library {written} was built; build its package, or correct the path", path, line
+        )
         return None
 
 
@@ -106,16 +110,17 @@ def declared_plugins(
             for base_package, written in exported_plugins(package.path):
                 _read_export(reader, package, base_package, written)
     names = {package.name for package in packages}
+    seen: set[tuple[str, str]] = set()
     for prefix in dict.fromkeys(prefixes):
-        _read_index(reader, prefix, names)
+        _read_index(reader, prefix, names, seen)
     return Declared(tuple(reader.found.values()), tuple(reader.faults))
 
 
 def _read_export(reader: _Reader, package: Package, base_package: str, written: str) -> None:
     """An export such as ``<nav_core plugin="${prefix}/plugins.xml"/>``."""
-    path = Path(written.replace("${prefix}", str(package.path)))
-    if not path.is_absolute():
-        path = package.path / path
+    path = package.path / written.removeprefix("${prefix}").lstrip("/")
+    if not path.is_file() and written.startswith("/"):
+        path = Path(written)
     if not path.is_file():
         manifest = package.path / MANIFEST
         reader.fault(f"<{base_package} plugin=...> names {written}, which is not there", manifest)
@@ -123,17 +128,20 @@ def _read_export(reader: _Reader, package: Package, base_package: str, written: 
     _read_xml(reader, path, package.name)
 
 
-def _read_index(reader: _Reader, prefix: Path, packages: set[str]) -> None:
+def _read_index(
+    reader: _Reader, prefix: Path, packages: set[str], seen: set[tuple[str, str]]
+) -> None:
+    """The resources of a prefix; those of a package count where they are found first."""
     index = prefix / _INDEX
     for kind in sorted(index.glob(f"*{_PLUGIN_ENDING}")):
-        for package, lines in _resources(reader, kind, packages):
+        for package, lines in _resources(reader, kind, packages, seen):
             for written in lines:
                 path = prefix / written
                 if path.is_file():
                     _read_xml(reader, path, package)
                 else:
                     reader.fault(f"names {written}, which is not there", kind / package)
-    for package, lines in _resources(reader, index / _COMPONENTS, packages):
+    for package, lines in _resources(reader, index / _COMPONENTS, packages, seen):
         for number, line in enumerate(lines, start=1):
             kind_of, _, written = line.partition(";")
             path = index / _COMPONENTS / package
@@ -143,14 +151,15 @@ def _read_index(reader: _Reader, prefix: Path, packages: set[str]) -> None:
 
 
 def _resources(
-    reader: _Reader, folder: Path, packages: set[str]
+    reader: _Reader, folder: Path, packages: set[str], seen: set[tuple[str, str]]
 ) -> Iterator[tuple[str, list[str]]]:
     """The lines of the resources of this kind that packages of the workspace have."""
     if not folder.is_dir():
         return
     for path in sorted(folder.iterdir()):
         name = path.name
-        if name in packages:
+        if name in packages and (folder.name, name) not in seen:
+            seen.add((folder.name, name))
             try:
                 text = read_bytes(path).decode("utf-8", "replace")
             except InputError as error:
@@ -161,26 +170,33 @@ def _resources(
 
 def _read_xml(reader: _Reader, path: Path, package: str) -> None:
     parser = expat.ParserCreate()
-    library: list[Path | None] = [None]
+    named: list[tuple[str, int]] = [("", 1)]
 
     def start(tag: str, given: dict[str, str]) -> None:
         line = parser.CurrentLineNumber
         if tag == "library":
-            library[0] = reader.library_at(given.get("path", ""), path, line)
+            named[0] = given.get("path", ""), line
         elif tag == "class":
             missing = [name for name in ("type", "base_class_type") if not given.get(name)]
             if missing:
-                reader.fault(f"<class> has no {missing[0]}", path, line)
-            elif library[0] is not None:
-                kind = given["type"].strip()
-                name = given.get("name", "").strip() or kind
-                base = given["base_class_type"].strip().removeprefix("::")
-                reader.add(Plugin(name, kind, base, package, library[0], path, line))
+                reader.fault(f'<class> has no {missing[0]}; add {missing[0]}="..."', path, line)
+                return
+            kind = given["type"].strip()
+            name = given.get("name", "").strip() or kind
+            base = given["base_class_type"].strip().removeprefix("::")
+            # Those of rqt and others in Python have no library.
+            library = (
+                None if _PYTHON.search(base) else reader.library_at(named[0][0], path, named[0][1])
+            )
+            if library is not None:
+                reader.add(Plugin(name, kind, base, package, library, path, line))
 
     parser.StartElementHandler = start
     try:
         parser.Parse(read_bytes(path), True)
     except expat.ExpatError as error:
         reader.fault(f"not XML: {expat.ErrorString(error.code)}", path, error.lineno)
+    except (ValueError, LookupError) as error:
+        reader.fault(f"its encoding cannot be read ({error}); save it as UTF-8", path)
     except InputError as error:
         reader.fault(error.message, path)

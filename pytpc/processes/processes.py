@@ -14,9 +14,17 @@ from pathlib import Path
 
 from pytpc.base.errors import WorkspaceError
 from pytpc.base.paths import ROS_PREFIXES
-from pytpc.build.nodes_env import nodes_env
+from pytpc.build.build import workspace_env
+from pytpc.build.nodes_env import with_devel_space
 from pytpc.build.reconcile import Recorded, build_folders, recorded_units
-from pytpc.processes.binaries import Binary, Libraries, cyclic_needs, system_folders
+from pytpc.processes.binaries import (
+    COMPONENT,
+    Binary,
+    Libraries,
+    cyclic_needs,
+    symbols,
+    system_folders,
+)
 from pytpc.processes.corrections import Corrected, Corrections
 from pytpc.processes.plugins import Plugin, declared_plugins
 from pytpc.processes.process import Choice, Process, Processes, Unit
@@ -48,17 +56,17 @@ def find_processes(
         WorkspaceError: it is not built, or has no packages.
         InputError: a file of the build is broken, or a correction names what is not there.
     """
+    workspace = workspace.absolute()
     bases = Bases.of(workspace) if bases is None else bases
     if not bases.static_info.is_file():
         raise WorkspaceError("not built with TPC yet; build it with: pytpc build", workspace)
     packages = find_packages(workspace)
     static = StaticInfo.load(bases.static_info)
-    env = nodes_env(workspace)
+    env = with_devel_space(workspace_env(bases.install), bases.devel)
     built = _built(bases, static)
     prefixes = _prefixes(env)
-    libraries = Libraries(
-        {name: path for path in built for name in _names(path)}, system_folders(env, prefixes)
-    )
+    ours, doubled = _by_name(built)
+    libraries = Libraries(ours, system_folders(env, prefixes))
     declared = declared_plugins(packages, prefixes, libraries.ours)
     wanted = frozenset(name for plugin in declared.plugins for name in plugin.names)
     starts: tuple[Start, ...] = ()
@@ -76,7 +84,7 @@ def find_processes(
     )
     found = finder.all(corrections or Corrections())
     cycle = cyclic_needs(one for path in built if (one := libraries.binary(path)))
-    faults = [*declared.faults]
+    faults = [*doubled, *declared.faults]
     if cycle:
         faults.append(f"libraries need one another in a circle: {' -> '.join(cycle)}")
     return Processes(tuple(found), tuple(faults), unread)
@@ -106,10 +114,22 @@ def _recorded(bases: Bases) -> Iterator[Recorded]:
         yield from recorded_units(folder) or ()
 
 
-def _names(path: Path) -> set[str]:
-    """What programs that need a library may call it."""
-    binary = Libraries({}).binary(path)
-    return {path.name} if binary is None else {path.name, binary.soname}
+def _by_name(built: Iterable[Path]) -> tuple[dict[str, Path], list[str]]:
+    """The files by what others may call them; and a text for each name that two have."""
+    found: dict[str, Path] = {}
+    faults = []
+    reader = Libraries({})
+    for path in built:
+        binary = reader.binary(path)
+        names = [path.name, *([] if binary is None else [binary.soname])]
+        # Declarations of plugins leave out the version.
+        names.append(path.name.partition(".so.")[0] + ".so" if ".so." in path.name else path.name)
+        for name in dict.fromkeys(names):
+            first = found.setdefault(name, path)
+            is_library = binary is not None and not binary.is_program
+            if first != path and is_library:
+                faults.append(f"{path}: another library has this name, {first}; that one counts")
+    return found, faults
 
 
 def _prefixes(env: Mapping[str, str]) -> list[Path]:
@@ -131,7 +151,7 @@ class _Finder:
     def all(self, corrections: Corrections) -> list[Process]:
         """All processes, sorted by name."""
         hosts: dict[str, Path | None] = {
-            f"{unit.package}/{unit.name}": path
+            f"{unit.package}/{path.name}": path
             for path, unit in self.built.items()
             if (binary := self.libraries.binary(path)) is not None and binary.is_program
         }
@@ -145,7 +165,8 @@ class _Finder:
         for program, host in sorted(hosts.items()):
             corrected = corrections.of(program)
             if corrected is not None:
-                found += [self._corrected(program, host, one, corrections) for one in corrected]
+                given = [self._corrected(program, host, one, corrections) for one in corrected]
+                found += _numbered(given)
             else:
                 found += self._of(program, host)
         corrections.refuse_unknown(hosts)
@@ -189,7 +210,7 @@ class _Finder:
         }
 
         def choose(binaries: Sequence[Binary]) -> Iterator[Path]:
-            for base in sorted({base for binary in binaries for base in binary.asks}):
+            for base in sorted(self._asked(binaries, host)):
                 if base not in choices:
                     choices[base] = self._choice(base, binaries, start)
             for choice in choices.values():
@@ -198,6 +219,32 @@ class _Finder:
         units = self._loaded(host, choose)
         kept = tuple(choice for choice in choices.values() if choice.plugins)
         return Process(program, program, host, units, kept, () if start is None else (start,))
+
+    def _asked(self, binaries: Sequence[Binary], host: Path | None) -> set[str]:
+        """The base classes that the code asks for.
+
+        That of a library counts if others use it: many programs are linked with more than they
+        need. Only a program that makes a manager of components is a container.
+        """
+        taken = {
+            one.path: symbols(one.path)[1]
+            for one in binaries
+            if one.path in self.built or one.path == host
+        }
+        asked: set[str] = set()
+        for binary in binaries:
+            if not binary.asks:
+                continue
+            is_own = binary.path in taken
+            if binary.path != host:
+                used = frozenset().union(*(n for path, n in taken.items() if path != binary.path))
+                if used.isdisjoint(symbols(binary.path)[0]) and not self._is_plugin(binary):
+                    continue
+            asked |= {base for base in binary.asks if is_own or base != COMPONENT}
+        return asked
+
+    def _is_plugin(self, binary: Binary) -> bool:
+        return any(plugin.library == binary.path for plugin in self.plugins)
 
     def _by_base(self, names: frozenset[str]) -> dict[str, list[Plugin]]:
         found: dict[str, list[Plugin]] = {}
@@ -245,8 +292,12 @@ class _Finder:
             return Choice(base, _in_order(candidates, named), "parameters")
         texts = frozenset(name for plugin in candidates for name in plugin.names)
         of_code = [one for one in binaries if one.path in self.built]
-        there = frozenset().union(*(one.texts(texts) for one in of_code)) if texts else frozenset()
-        named = [plugin for plugin in candidates if plugin.names & there]
+        # A plugin's own library has its name, too.
+        named = [
+            plugin
+            for plugin in candidates
+            if any(one.texts(texts) & plugin.names for one in of_code if one.path != plugin.library)
+        ]
         return Choice(base, tuple(named or candidates), "code" if named else "all")
 
     def _defaults(
@@ -286,12 +337,19 @@ def _named(processes: Sequence[Process], program: str) -> list[Process]:
     """The processes of one program under names of their own: after what starts them."""
     if len(processes) < 2:
         return list(processes)
-    taken: dict[str, int] = {}
     found = []
     for process in processes:
         by = process.starts[0].path.name.partition(".")[0] if process.starts else "default"
-        name = f"{program}@{by}"
-        taken[name] = taken.get(name, 0) + 1
-        number = f"-{taken[name]}" if taken[name] > 1 else ""
-        found.append(replace(process, name=f"{name}{number}"))
+        found.append(replace(process, name=f"{program}@{by}"))
+    return _numbered(found)
+
+
+def _numbered(processes: Iterable[Process]) -> list[Process]:
+    """The processes; of a name that several have, all but the first get a number."""
+    taken: dict[str, int] = {}
+    found = []
+    for process in processes:
+        taken[process.name] = number = taken.get(process.name, 0) + 1
+        name = process.name if number == 1 else f"{process.name}-{number}"
+        found.append(replace(process, name=name))
     return found

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from pathlib import Path
 
 from pytpc.base.errors import InputError, TpcError
@@ -12,13 +15,20 @@ from pytpc.base.source_bytes import read_bytes
 from pytpc.values.launch_kinds import is_ros2_launch
 from pytpc.values.ros2_trace import trace_any_launch
 from pytpc.values.trace import LaunchNode, Trace
+from pytpc.values.yaml_tree import YamlNode, read_yaml
 from pytpc.workspace.packages import PRODUCTS, Package
 
 _LAUNCH = (".launch", ".launch.xml", ".launch.py", ".launch.yaml", ".launch.yml")
 _YAML = (".yaml", ".yml")
 _WORD = re.compile(r"[A-Za-z_][\w/:.-]*")
 _NODELET = "nodelet"
+_CONTAINER = "rclcpp_components/component_container"
+_OF_FILES = " files"
+_XML_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
+_COMMENT = re.compile(r"#.*")
 _LARGEST = 4 << 20
+FILE = "tpc-processes.yaml"
+"""What a user knows better, in the folder of a workspace; `pytpc.processes.corrections`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,8 +36,9 @@ class Start:
     """A node that a launch file starts.
 
     ``names`` are all words in the values of its parameters, each with the parameter, relative to
-    the node. ``loads`` are the plugins that are loaded into it by the launch file itself: nodelets
-    and components. A file that no launch file reads has its words in ``names``, and no node.
+    the node; those of the nodes that are loaded into it, and of the namespaces that it is in, are
+    among them. ``loads`` are the plugins that launch files load into it: nodelets and components.
+    A file that no launch file reads has its words in ``names``, and no node.
     """
 
     program: str
@@ -57,11 +68,6 @@ class Starts:
     unread: Mapping[Path, str]
 
 
-def launch_files(packages: Iterable[Package]) -> list[Path]:
-    """The launch files below the folders of packages, sorted."""
-    return sorted(_files(packages, _LAUNCH))
-
-
 def read_starts(
     env: Mapping[str, str],
     packages: Sequence[Package],
@@ -79,64 +85,122 @@ def read_starts(
         wanted: the names of plugins.
         on_progress: called with (files read, all files).
     """
-    paths = launch_files(packages)
+    launches, yamls = _files(packages)
     found: list[Start] = []
     unread: dict[Path, str] = {}
     known: set[Path] = set()
-    for number, path in enumerate(paths):
-        if on_progress is not None:
-            on_progress(number, len(paths))
+
+    def traced(path: Path) -> Trace | TpcError:
         try:
-            trace = trace_any_launch(env, path, {})
+            return trace_any_launch(env, path, {})
         except TpcError as error:
-            unread[path] = error.message
-            continue
-        known |= {path.resolve(), *(Path(name).resolve() for name in trace.files)}
-        found += starts_of(trace)
-    if on_progress is not None:
-        on_progress(len(paths), len(paths))
-    for path in (*unread, *sorted(_files(packages, _YAML))):
-        words = wanted & _words_in(path) if path.resolve() not in known else frozenset()
+            return error
+
+    with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
+        for number, (path, read) in enumerate(
+            zip(launches, pool.map(traced, launches), strict=True), start=1
+        ):
+            if on_progress is not None:
+                on_progress(number, len(launches))
+            if isinstance(read, TpcError):
+                unread[path] = read.message
+                continue
+            known |= {path.resolve(), *(Path(name).resolve() for name in read.files)}
+            found += starts_of(read)
+    for path in (*unread, *yamls):
+        words = wanted & words_in(path) if path.resolve() not in known else frozenset()
         if words:
             found.append(Start("", "", path, 0, {"": words}))
     # A file that others include is read with each of them.
     once = {(one.program, one.node, one.path, one.line, one.words, one.loads): one for one in found}
-    return Starts(tuple(once.values()), unread)
+    return Starts(tuple(_joined(once.values())), unread)
+
+
+def _joined(starts: Iterable[Start]) -> Iterator[Start]:
+    """The starts; what is loaded into a node of another launch file is loaded there."""
+    starts = list(starts)
+    loose = [one for one in starts if one.node and not one.line and one.loads]
+    hosts = {one.node for one in starts if one.node and one.line}
+    for one in starts:
+        if one in loose:
+            if one.node not in hosts:
+                yield one
+            continue
+        more = [each for each in loose if each.node == one.node]
+        if more:
+            names = dict(one.names)
+            for each in more:
+                names.update(each.names)
+            loads = one.loads.union(*(each.loads for each in more))
+            yield replace(one, names=names, loads=loads)
+        else:
+            yield one
 
 
 def starts_of(trace: Trace) -> Iterator[Start]:
     """The nodes that a launch file starts, with the plugins that it loads into them."""
     loads: dict[str, set[str]] = {}
+    loaded: dict[str, list[LaunchNode]] = {}
     others: list[LaunchNode] = []
     for node in trace.nodes:
         words = node.args.split() if node.program == _NODELET else []
-        if node.container:
-            loads.setdefault(node.container, set()).add(node.program)
-        elif words[:1] == ["load"] and len(words) > 2:
-            loads.setdefault(_resolved(words[2], node.name), set()).add(words[1])
+        host, plugin = node.container, node.program
+        if words[:1] == ["load"] and len(words) > 2:
+            host, plugin = _resolved(words[2], node.name), words[1]
+        if host:
+            loads.setdefault(host, set()).add(plugin)
+            loaded.setdefault(host, []).append(node)
         elif words[:1] not in (["load"], ["unload"]):
             others.append(node)
             if words[:1] == ["standalone"]:
                 loads.setdefault(node.name, set()).update(words[1:2])
+    inside = _Words(trace)
     for node in others:
-        yield Start(
-            f"{node.package}/{node.program}",
-            node.name,
-            node.path,
-            node.lineno,
-            _names_of(trace, node.name),
-            frozenset(loads.get(node.name, ())),
-        )
+        names = inside.of([node, *loaded.pop(node.name, ())])
+        plugins = frozenset(loads.get(node.name, ()))
+        program = f"{node.package}/{node.program}"
+        yield Start(program, node.name, node.path, node.lineno, names, plugins)
+    for host, nodes in loaded.items():
+        # Another launch file starts it.
+        program = _CONTAINER if nodes[0].container else f"{_NODELET}/{_NODELET}"
+        names = inside.of(nodes)
+        yield Start(program, host, nodes[0].path, 0, names, frozenset(loads[host]))
 
 
-def _names_of(trace: Trace, node: str) -> dict[str, frozenset[str]]:
-    """The words in the last values of the parameters of a node."""
+@dataclass(slots=True)
+class _Words:
+    """Finds the words in the last values of the parameters that nodes may read."""
+
+    trace: Trace
+
+    def of(self, nodes: Sequence[LaunchNode]) -> dict[str, frozenset[str]]:
+        """Those of the nodes, and those of the namespaces that they are in, by parameter."""
+        others = {one.name + "/" for one in self.trace.nodes} - {one.name + "/" for one in nodes}
+        found: dict[str, frozenset[str]] = {}
+        for name, settings in self.trace.settings.items():
+            if settings and not any(name.startswith(other) for other in others):
+                short = next(
+                    (_below(name, node.name) for node in nodes if _below(name, node.name)), ""
+                )
+                if short or any(_is_around(name, node.name) for node in nodes):
+                    words = frozenset(_words(settings[-1].get("value")))
+                    found[short or name.lstrip("/")] = words
+        if self.trace.placed is not None:
+            # A process may make further nodes, whose parameters are in the same files.
+            files = [Path(one) for one in self.trace.files if one.endswith(_YAML)]
+            found[_OF_FILES] = frozenset().union(*map(words_in, files))
+        return found
+
+
+def _below(name: str, node: str) -> str:
+    """The name of a parameter relative to a node; empty if it is not below that."""
     below = node.rstrip("/") + "/"
-    return {
-        name.removeprefix(below): frozenset(_words(settings[-1].get("value")))
-        for name, settings in trace.settings.items()
-        if name.startswith(below) and settings
-    }
+    return name.removeprefix(below) if name.startswith(below) else ""
+
+
+def _is_around(name: str, node: str) -> bool:
+    """Whether a parameter is in a namespace that a node is in."""
+    return node.startswith(name.rpartition("/")[0] + "/")
 
 
 def _words(value: object) -> Iterator[str]:
@@ -150,14 +214,30 @@ def _words(value: object) -> Iterator[str]:
             yield from _words(one)
 
 
-def _words_in(path: Path) -> frozenset[str]:
-    """The words of a file that is not too large to be written by hand."""
+@lru_cache(maxsize=1024)
+def words_in(path: Path) -> frozenset[str]:
+    """The words of a file that is not too large to be written by hand, without its comments."""
     try:
         if path.stat().st_size > _LARGEST:
             return frozenset()
-        return frozenset(_WORD.findall(read_bytes(path).decode("utf-8", "replace")))
+        text = read_bytes(path).decode("utf-8", "replace")
     except (OSError, InputError):
         return frozenset()
+    if path.suffix in _YAML:
+        try:
+            return frozenset(_WORD.findall("\n".join(_scalars(read_yaml(text)))))
+        except ValueError:
+            return frozenset()
+    without = _XML_COMMENT.sub("", text) if path.suffix != ".py" else _COMMENT.sub("", text)
+    return frozenset(_WORD.findall(without))
+
+
+def _scalars(nodes: Iterable[YamlNode]) -> Iterator[str]:
+    for node in nodes:
+        if node.kind == "scalar":
+            yield node.text
+        yield from _scalars(node.items)
+        yield from _scalars(value for _, value in node.pairs)
 
 
 def _resolved(name: str, node: str) -> str:
@@ -165,17 +245,22 @@ def _resolved(name: str, node: str) -> str:
     return name if name.startswith("/") else f"{node.rpartition('/')[0]}/{name}"
 
 
-def _files(packages: Iterable[Package], endings: tuple[str, ...]) -> Iterator[Path]:
+def _files(packages: Iterable[Package]) -> tuple[list[Path], list[Path]]:
+    """The launch files and the YAML files below the folders of packages, each sorted."""
+    launches, yamls = set(), set()
     for package in packages:
-        for path in package.path.rglob("*"):
-            parts = path.relative_to(package.path).parts
-            if any(part.startswith(".") or part in PRODUCTS for part in parts[:-1]):
-                continue
-            is_named = path.name.endswith(endings)
-            if (is_named or (endings is _LAUNCH and _is_launch(path, parts))) and path.is_file():
-                yield path
+        for folder, below, files in os.walk(package.path):
+            below[:] = [one for one in below if not one.startswith(".") and one not in PRODUCTS]
+            for name in files:
+                path = Path(folder, name)
+                if name.endswith(_LAUNCH) or _is_launch(path):
+                    launches.add(path)
+                elif path.suffix in _YAML and name != FILE:
+                    yamls.add(path)
+    return sorted(launches), sorted(yamls)
 
 
-def _is_launch(path: Path, parts: tuple[str, ...]) -> bool:
+def _is_launch(path: Path) -> bool:
     """Whether a file in a folder ``launch`` is a launch file by what is in it."""
-    return parts[0] == "launch" and path.suffix in (".xml", *_YAML) and is_ros2_launch(path)
+    is_there = path.parent.name == "launch" and path.suffix in (".xml", *_YAML)
+    return is_there and is_ros2_launch(path)

@@ -282,7 +282,7 @@ def exported_plugins(folder: Path) -> list[tuple[str, str]]:
     return [
         (one.tagname, one.attributes["plugin"])
         for one in manifest.exports
-        if one.attributes.get("plugin")
+        if one.attributes.get("plugin") and one.evaluated_condition is not False
     ]
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from pytpc.processes.binaries import COMPONENT, Libraries, cyclic_needs, read_binary
 from pytpc.processes.plugins import declared_plugins
-from pytpc.processes.starts import starts_of
+from pytpc.processes.starts import starts_of, words_in
 from pytpc.values.trace import LaunchNode, Trace
 from pytpc.workspace.packages import find_packages
 
@@ -79,6 +79,12 @@ def test_libraries_that_need_one_another(tmp_path):
     assert cyclic_needs(binaries) == ["libone.so", "libtwo.so", "libone.so"]
 
 
+def test_a_program_without_a_dynamic_linker(tmp_path):
+    found = read_binary(compiled(tmp_path, "program", "int main() {}", "-static", "-no-pie"))
+    assert found is not None
+    assert found.is_program
+
+
 @pytest.mark.parametrize("content", [b"", b"\x7fELF", b"\x7fELF" + bytes(60), b"#!/bin/sh\n"])
 def test_files_that_are_no_programs(tmp_path, content):
     path = tmp_path / "file"
@@ -124,8 +130,82 @@ def test_plugins_and_components_of_ros2(tmp_path):
     index = prefix / INDEX
     assert found.faults == (
         f"{index}/nav__pluginlib__plugin/grid: names share/grid/gone.xml, which is not there",
-        f"{index}/rclcpp_components/grid:2: no library lib/libgone.so was built",
+        f"{index}/rclcpp_components/grid:2: no library lib/libgone.so was built;"
+        " build its package, or correct the path",
     )
+
+
+@pytest.mark.parametrize(
+    ("head", "fault"),
+    [
+        ('<?xml version="1.0" encoding="GB2312"?>', "its encoding cannot be read"),
+        ('<?xml version="1.0" encoding="none"?>', "its encoding cannot be read"),
+        ("", ""),
+    ],
+)
+def test_plugin_files_with_other_encodings_and_languages(tmp_path, head, fault):
+    package(tmp_path / "src", "grid")
+    found = []
+    # Of two prefixes with the package, the first counts: the second has a plugin more.
+    for name, more in (("new", ""), ("old", '<class type="a::B" base_class_type="nav::Layer"/>')):
+        prefix = tmp_path / name
+        index = prefix / INDEX / "nav__pluginlib__plugin"
+        index.mkdir(parents=True)
+        (index / "grid").write_text("layers.xml\n")
+        (prefix / "layers.xml").write_text(
+            f'{head}<library path="layers">{more}'
+            '<class type="grid::Wall" base_class_type="nav::Layer"/></library>'
+        )
+        found.append(prefix)
+    python = (
+        '<library path="src"><class type="a.B" base_class_type="rqt_gui_py::Plugin"/></library>'
+    )
+    (tmp_path / "new" / INDEX / "rqt__pluginlib__plugin").mkdir()
+    (tmp_path / "new" / INDEX / "rqt__pluginlib__plugin/grid").write_text("python.xml\n")
+    (tmp_path / "new/python.xml").write_text(python)
+    libraries = {"liblayers.so": tmp_path / "liblayers.so"}
+    declared = declared_plugins(find_packages(tmp_path / "src"), found, libraries)
+    assert [one.name for one in declared.plugins] == ([] if fault else ["grid::Wall"])
+    assert [fault in one for one in declared.faults] == ([True] if fault else [])
+
+
+# The parameters of what is loaded are read in the process, and so are those around it.
+def test_parameters_of_what_is_loaded_and_of_namespaces():
+    nodes = [
+        node("/a/box", "component_container"),
+        node("/a/planner", "some::Planner", container="/a/box"),
+        node("/a/other", "other"),
+        node("/a/late", "some::Late", container="/far"),
+        node("/a/one", "nodelet", "load some/One /gone"),
+    ]
+    settings = {
+        "/a/planner/kind": [{"value": "x::Fast"}],
+        "/a/mode": [{"value": "x::Mode"}],
+        "/a/other/kind": [{"value": "x::Other"}],
+        "/b/mode": [{"value": "x::Far"}],
+        "/a/late/kind": [{"value": "x::Late"}],
+    }
+    found = {one.node: one for one in starts_of(Trace(None, {}, settings, nodes, {}))}
+    assert {name: one.program for name, one in found.items() if one.loads} == {
+        "/a/box": "some/component_container",
+        "/far": "rclcpp_components/component_container",
+        "/gone": "nodelet/nodelet",
+    }
+    assert found["/a/box"].words == {"x::Fast", "x::Mode"}
+    assert found["/far"].words == {"x::Late", "x::Mode"}
+    assert found["/a/other"].words == {"x::Other", "x::Mode"}
+
+
+def test_words_without_comments(tmp_path):
+    for name, text in {
+        "a.yaml": "planner: x/Fast  # x/Slow\n",
+        "b.launch": '<launch><!-- x/Slow --><param name="a" value="x/Fast"/></launch>',
+        "c.launch.py": 'Node(plugin="x/Fast")  # x/Slow\n',
+    }.items():
+        (tmp_path / name).write_text(text)
+        assert words_in(tmp_path / name) & {"x/Fast", "x/Slow"} == {"x/Fast"}
+    (tmp_path / "broken.yaml").write_text("a: [")
+    assert words_in(tmp_path / "broken.yaml") == frozenset()
 
 
 def node(name: str, program: str, args: str = "", container: str = "") -> LaunchNode:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -38,6 +39,9 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def changed(built: Path):
     """The workspace; what a test changes in its sources is taken back."""
     yield built
+    for path in (built / "src").rglob("*"):
+        if path.is_file() and not (PLUGGED / path.relative_to(built)).is_file():
+            path.unlink()
     for path in PLUGGED.rglob("*"):
         if path.is_file():
             shutil.copy(path, built / path.relative_to(PLUGGED))
@@ -65,13 +69,13 @@ def test_programs_with_the_plugins_that_launch_files_name(built):
     assert units_of(found) == {
         "nodelet/nodelet": ["plugged_nodelets", "plugged_limits"],
         "plugged_drive/drive@careful": [
-            "drive",
+            "drive_node",
             "plugged_careful",
             "plugged_layers",
             "plugged_limits",
             "plugged_map",
         ],
-        "plugged_drive/drive@direct": ["drive", "plugged_direct"],
+        "plugged_drive/drive@direct": ["drive_node", "plugged_direct"],
     }
     why = {
         (one["name"], choice["base"]): (choice["why"], [each["name"] for each in choice["plugins"]])
@@ -100,7 +104,9 @@ def test_programs_with_the_plugins_that_launch_files_name(built):
 
 
 def test_in_words(built):
-    ran = told(built)
+    command = [sys.executable, "-m", "pytpc", "processes"]
+    env = {**os.environ, "PYTHONPATH": str(project_root())}
+    ran = subprocess.run(command, capture_output=True, text=True, cwd=built, env=env, check=True)
     assert "plugged_drive/drive@direct: 2 link units, " in ran.stdout
     assert "plugins plugged_direct/Direct (plugged::Planner; named in the code)" in ran.stdout
     assert UNREAD in ran.stderr
@@ -110,7 +116,7 @@ def test_without_launch_files_the_default_counts_and_without_a_default_all_do(ch
     for path in (changed / "src/plugged_bringup").glob("*/*"):
         path.unlink()
     (found,) = processes(changed).found
-    assert [unit.name for unit in found.units] == ["drive", "plugged_direct"]
+    assert [unit.name for unit in found.units] == ["drive_node", "plugged_direct"]
     # With a planner that loads layers, and nothing that names one.
     launch = (PLUGGED / "src/plugged_bringup/launch/careful.launch").read_text()
     launch = "\n".join(line for line in launch.splitlines() if "rosparam" not in line)
@@ -131,13 +137,42 @@ def test_a_yaml_file_that_no_launch_file_reads_is_a_way_to_start(changed):
         "planner: plugged_twins/Silent\n"
     )
     (found,) = processes(changed).found
-    assert [unit.name for unit in found.units] == ["drive", "plugged_twins", "plugged_limits"]
+    assert [unit.name for unit in found.units] == ["drive_node", "plugged_twins", "plugged_limits"]
     assert [start.path.name for start in found.starts] == ["robot.yaml"]
 
 
-def test_the_printed_corrections_change_nothing(changed):
+# The file of another build: its environment and its files count.
+def test_another_base(built, tmp_path):
+    workspace = tmp_path / "ws"
+    shutil.copytree(PLUGGED, workspace)
+    found = json.loads(told(workspace, "--base", built / ".tpc", "--json").stdout)
+    assert units_of(found) == units_of(shown(built))
+
+
+# In a namespace around the node, and commented out in a file that nobody reads.
+def test_parameters_around_the_node(changed):
+    launches = changed / "src/plugged_bringup/launch"
+    for path in launches.iterdir():
+        path.unlink()
+    (launches / "robot.launch").write_text(
+        '<launch><group ns="robot"><param name="planner" value="plugged_twins/Silent"/>'
+        '<node pkg="plugged_drive" type="drive" name="drive"/></group></launch>'
+    )
+    (changed / "src/plugged_bringup/config/old.yaml").write_text("# plugged_careful/Careful\n")
+    (found,) = processes(changed).found
+    assert [one.name for one in found.plugins] == ["plugged_twins/Silent"]
+
+
+def test_the_written_corrections_change_nothing_and_are_kept(changed):
     before = shown(changed)
-    (changed / "tpc-processes.yaml").write_text(told(changed, "--yaml").stdout)
+    path = changed / "tpc-processes.yaml"
+    assert told(changed, "--write").stdout == f"written: {path}\n"
+    written = path.read_text()
+    (said,) = [
+        one for one in told(changed, "--write", status=1).stderr.splitlines() if "error" in one
+    ]
+    assert said.endswith("is there already; edit it, or remove it first")
+    assert path.read_text() == written
     after = shown(changed)
     assert units_of(after) == units_of(before)
     assert {choice["why"] for one in after["processes"] for choice in one["choices"]} == {
@@ -155,7 +190,7 @@ def test_corrections_replace_what_was_found(changed):
         "  nodelet/nodelet: []\n"
     )
     assert units_of(shown(changed)) == {
-        "silent": ["drive", "plugged_twins", "plugged_map", "plugged_limits"]
+        "silent": ["drive_node", "plugged_twins", "plugged_map", "plugged_limits"]
     }
 
 
@@ -165,13 +200,17 @@ def test_corrections_replace_what_was_found(changed):
         (
             "processes:\n  plugged_drive/driv: []\n",
             2,
-            "no program plugged_drive/driv; did you mean",
+            "no program plugged_drive/driv was built; did you mean",
         ),
-        ("processes:\n  plugged_drive/drive:\n  - plugins: [x/Y]\n", 3, "no plugin x/Y"),
+        (
+            "processes:\n  plugged_drive/drive:\n  - plugins: [x/Y]\n",
+            3,
+            "no package declares a plugin x/Y",
+        ),
         (
             "processes:\n  plugged_drive/drive:\n  - libraries:\n    - libz.so\n",
             4,
-            "no library libz.so",
+            "no library libz.so was built",
         ),
         (
             "processes:\n  plugged_drive/drive:\n  - plugin: []\n",
