@@ -270,7 +270,7 @@ class GraphRecording:
         try:
             try:
                 if not hurry:
-                    self._wait_for_values()
+                    self.wait_for_values()
                 if not fault:
                     with contextlib.suppress(RunError):
                         self._agent.drain()
@@ -284,9 +284,11 @@ class GraphRecording:
         self._save_values()
         return self._status(closed=True), fault
 
-    def _wait_for_values(self) -> None:
-        """Wait for the values of nodes that have only just been found."""
-        while self._values.are_asked_for(self._agent.patience_s) and not self._agent.fault:
+    def wait_for_values(self, hurries: Callable[[], bool] = lambda: False) -> None:
+        """Wait for the values of nodes that have only just been found, unless one ``hurries``."""
+        while self._values.are_asked_for(self._agent.patience_s):
+            if self._agent.fault or hurries():
+                return
             self.step(_POLL_S)
 
     def _is_history(self, stamp_ns: int, data: bytes) -> bool:

@@ -96,6 +96,8 @@ def run_ros2_mission(
             if not stop.is_set():
                 _start(flight, options, programs, python)
                 ended = recording.run(stop, began, watch.look)
+                # A node that is ended does not tell its parameters any more.
+                recording.wait_for_values(lambda: stop.in_a_hurry)
         except RunError as error:
             failure = error
         finally:
