@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shlex
-from contextlib import ExitStack
 from pathlib import Path
 
 import click
@@ -13,7 +12,7 @@ from rich.text import Text
 from pytpc.api.building import Processes, processes, write_corrections
 from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import JSON, PATH
-from pytpc.cli.console import Advance, console, print_json, progress, tell_next, warn
+from pytpc.cli.console import console, print_json, progress, tell_next, warn
 from pytpc.present.process_list import processes_as_json, processes_as_yaml, words_of
 
 
@@ -40,15 +39,8 @@ def processes_command(
     """
     if write and as_json:
         raise click.UsageError("--write and --json cannot be combined")
-    with ExitStack() as stack:
-        shown: list[Advance] = []
-
-        def show(done: int, total: int) -> None:
-            if not shown:
-                shown.append(stack.enter_context(progress("reading launch files")))
-            shown[0](done, total)
-
-        found = processes(workspace, base, corrections, on_progress=show)
+    with progress("reading launch files") as advance:
+        found = processes(workspace, base, corrections, on_progress=advance)
     for fault in found.faults:
         warn(fault)
     if as_json:

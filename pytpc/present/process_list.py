@@ -35,7 +35,7 @@ def _choice(choice: Choice) -> str:
 
 
 def processes_as_json(found: Processes) -> dict[str, Any]:
-    """Everything that is known; docs/reference/formats.md describes it."""
+    """Everything that is known; docs/reference/command-line.md describes it."""
     return {
         "schema": 1,
         "processes": [

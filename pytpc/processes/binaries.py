@@ -99,7 +99,8 @@ def read_binary(path: Path) -> Binary | None:
             is_program = elf["e_type"] == "ET_EXEC" or any(
                 one["p_type"] == "PT_INTERP" for one in elf.iter_segments()
             )
-        folders = [one for text in _both(tags, "runpath", "rpath") for one in text.split(":")]
+        searched = [*tags.get("runpath", ()), *tags.get("rpath", ())]
+        folders = [one for text in searched for one in text.split(":")]
         with _mapped(path) as content:
             asks = frozenset(_asked(content))
     except (OSError, ValueError, ELFError):
@@ -120,10 +121,6 @@ def _read_tags(dynamic: DynamicSegment, tags: dict[str, list[str]]) -> None:
         for name in ("needed", "soname", "runpath", "rpath"):
             if tag.entry.d_tag == f"DT_{name.upper()}":
                 tags.setdefault(name, []).append(getattr(tag, name))
-
-
-def _both(tags: Mapping[str, list[str]], *names: str) -> list[str]:
-    return [text for name in names for text in tags.get(name, ())]
 
 
 def _mapped(path: Path) -> mmap.mmap:
@@ -160,11 +157,11 @@ class Libraries:
     """Finds the libraries of programs, those of the workspace first, and reads each once.
 
     Args:
-        ours: the libraries of the workspace.
+        ours: the libraries of the workspace, by what others may call them.
         folders: where others are looked for.
     """
 
-    ours: Mapping[str, Path]
+    ours: Mapping[str, Path] = field(default_factory=dict)
     folders: tuple[Path, ...] = ()
     _read: dict[Path, Binary | None] = field(default_factory=dict)
     _found: dict[tuple[str, tuple[Path, ...]], Path | None] = field(default_factory=dict)

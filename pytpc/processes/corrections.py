@@ -11,10 +11,10 @@ from pytpc.base.closest import did_you_mean
 from pytpc.base.errors import InputError
 from pytpc.base.source_bytes import read_bytes
 from pytpc.processes.plugins import Plugin
-from pytpc.processes.starts import FILE
 from pytpc.values.yaml_tree import YamlNode, read_yaml
 
-__all__ = ["FILE", "Corrected", "Corrections", "Named", "read_corrections", "write_corrections"]
+FILE = "tpc-processes.yaml"
+"""The name of the file, in the folder of a workspace."""
 _LISTS = ("plugins", "libraries")
 
 

@@ -6,7 +6,6 @@ the index of resources of ROS 2. Components of rclcpp: the same index.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -20,7 +19,7 @@ from pytpc.workspace.packages import MANIFEST, Package, exported_plugins
 _INDEX = Path("share/ament_index/resource_index")
 _PLUGIN_ENDING = "__pluginlib__plugin"
 _COMPONENTS = "rclcpp_components"
-_PYTHON = re.compile(r"_py::")
+_IN_PYTHON = "_py::"
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,9 +184,10 @@ def _read_xml(reader: _Reader, path: Path, package: str) -> None:
             name = given.get("name", "").strip() or kind
             base = given["base_class_type"].strip().removeprefix("::")
             # Those of rqt and others in Python have no library.
-            library = (
-                None if _PYTHON.search(base) else reader.library_at(named[0][0], path, named[0][1])
-            )
+            if _IN_PYTHON in base:
+                return
+            written, at = named[0]
+            library = reader.library_at(written, path, at)
             if library is not None:
                 reader.add(Plugin(name, kind, base, package, library, path, line))
 

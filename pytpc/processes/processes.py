@@ -65,8 +65,8 @@ def find_processes(
     env = with_devel_space(workspace_env(bases.install), bases.devel)
     built = _built(bases, static)
     prefixes = _prefixes(env)
-    ours, doubled = _by_name(built)
-    libraries = Libraries(ours, system_folders(env, prefixes))
+    libraries = Libraries(folders=system_folders(env, prefixes))
+    libraries.ours, doubled = _by_name(built, libraries)
     declared = declared_plugins(packages, prefixes, libraries.ours)
     wanted = frozenset(name for plugin in declared.plugins for name in plugin.names)
     starts: tuple[Start, ...] = ()
@@ -114,11 +114,10 @@ def _recorded(bases: Bases) -> Iterator[Recorded]:
         yield from recorded_units(folder) or ()
 
 
-def _by_name(built: Iterable[Path]) -> tuple[dict[str, Path], list[str]]:
+def _by_name(built: Iterable[Path], reader: Libraries) -> tuple[dict[str, Path], list[str]]:
     """The files by what others may call them; and a text for each name that two have."""
     found: dict[str, Path] = {}
     faults = []
-    reader = Libraries({})
     for path in built:
         binary = reader.binary(path)
         names = [path.name, *([] if binary is None else [binary.soname])]
@@ -286,7 +285,7 @@ class _Finder:
             for plugin, parameter in defaults:
                 if plugin not in named and not (start is not None and start.sets(parameter)):
                     named.append(plugin)
-            why = "parameters" if words & {name for one in named for name in one.names} else "code"
+            why = "parameters" if any(one.names & words for one in named) else "code"
             return Choice(base, _in_order(candidates, named), why)
         if named:
             return Choice(base, _in_order(candidates, named), "parameters")

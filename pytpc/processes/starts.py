@@ -12,6 +12,7 @@ from pathlib import Path
 
 from pytpc.base.errors import InputError, TpcError
 from pytpc.base.source_bytes import read_bytes
+from pytpc.processes.corrections import FILE
 from pytpc.values.launch_kinds import is_ros2_launch
 from pytpc.values.ros2_trace import trace_any_launch
 from pytpc.values.trace import LaunchNode, Trace
@@ -27,8 +28,6 @@ _OF_FILES = " files"
 _XML_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _COMMENT = re.compile(r"#.*")
 _LARGEST = 4 << 20
-FILE = "tpc-processes.yaml"
-"""What a user knows better, in the folder of a workspace; `pytpc.processes.corrections`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,23 +117,21 @@ def read_starts(
 
 def _joined(starts: Iterable[Start]) -> Iterator[Start]:
     """The starts; what is loaded into a node of another launch file is loaded there."""
-    starts = list(starts)
-    loose = [one for one in starts if one.node and not one.line and one.loads]
-    hosts = {one.node for one in starts if one.node and one.line}
+    hosts: list[Start] = []
+    loose: dict[str, list[Start]] = {}
     for one in starts:
-        if one in loose:
-            if one.node not in hosts:
-                yield one
-            continue
-        more = [each for each in loose if each.node == one.node]
-        if more:
-            names = dict(one.names)
-            for each in more:
-                names.update(each.names)
-            loads = one.loads.union(*(each.loads for each in more))
-            yield replace(one, names=names, loads=loads)
+        if one.node and one.loads and not one.line:
+            loose.setdefault(one.node, []).append(one)
         else:
-            yield one
+            hosts.append(one)
+    started = {one.node for one in hosts if one.line}
+    yield from (one for node, ones in loose.items() if node not in started for one in ones)
+    for one in hosts:
+        names, loads = dict(one.names), one.loads
+        for each in loose.get(one.node, ()):
+            names.update(each.names)
+            loads |= each.loads
+        yield replace(one, names=names, loads=loads)
 
 
 def starts_of(trace: Trace) -> Iterator[Start]:

@@ -6,6 +6,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from packages import add_package
 
 from pytpc.processes.binaries import COMPONENT, Libraries, cyclic_needs, read_binary
 from pytpc.processes.plugins import declared_plugins
@@ -20,6 +21,7 @@ template <class T> struct ClassLoader {
 };
 }
 """
+AMENT = "<export><build_type>ament_cmake</build_type></export>"
 INDEX = "share/ament_index/resource_index"
 
 
@@ -93,19 +95,9 @@ def test_files_that_are_no_programs(tmp_path, content):
     assert read_binary(tmp_path / "none") is None
 
 
-def package(folder: Path, name: str) -> None:
-    (folder / name).mkdir(parents=True)
-    (folder / name / "package.xml").write_text(
-        f"""<package format="3"><name>{name}</name><version>1.0.0</version>
-<description>d</description><maintainer email="a@b.org">a</maintainer><license>x</license>
-<buildtool_depend>ament_cmake</buildtool_depend>
-<export><build_type>ament_cmake</build_type></export></package>"""
-    )
-
-
 # The index of ROS 2: pluginlib's files name XML, components' files name classes and libraries.
 def test_plugins_and_components_of_ros2(tmp_path):
-    package(tmp_path / "src", "grid")
+    add_package(tmp_path / "src/grid", more=AMENT)
     prefix = tmp_path / "install"
     for name, text in {
         "nav__pluginlib__plugin/grid": "share/grid/layers.xml\nshare/grid/gone.xml\n",
@@ -144,7 +136,7 @@ def test_plugins_and_components_of_ros2(tmp_path):
     ],
 )
 def test_plugin_files_with_other_encodings_and_languages(tmp_path, head, fault):
-    package(tmp_path / "src", "grid")
+    add_package(tmp_path / "src/grid", more=AMENT)
     found = []
     # Of two prefixes with the package, the first counts: the second has a plugin more.
     for name, more in (("new", ""), ("old", '<class type="a::B" base_class_type="nav::Layer"/>')):
