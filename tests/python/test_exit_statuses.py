@@ -63,6 +63,7 @@ FOLDERS: Mapping[str, Sequence[str]] = {
     "env": (INPUT,),
     "origin": (INPUT,),
     "patch": (INPUT,),
+    "processes": (INPUT,),
     "record": (INPUT, "robot.launch", "-o", "out"),
     "run": (INPUT,),
     "study": ("suggested", INPUT),
