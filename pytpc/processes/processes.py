@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from pytpc.base.closest import no_folder
 from pytpc.base.errors import WorkspaceError
 from pytpc.base.paths import ROS_PREFIXES
 from pytpc.build.build import workspace_env
@@ -58,6 +59,8 @@ def find_processes(
     """
     workspace = workspace.absolute()
     bases = Bases.of(workspace) if bases is None else bases
+    if not workspace.is_dir():
+        raise WorkspaceError(no_folder(workspace), workspace)
     if not bases.static_info.is_file():
         raise WorkspaceError("not built with TPC yet; build it with: pytpc build", workspace)
     packages = find_packages(workspace)

@@ -262,3 +262,8 @@ def test_an_export_of_a_file_that_is_not_there(changed):
 def test_a_workspace_that_was_not_built(tmp_path):
     (said,) = told(tmp_path, status=1).stderr.splitlines()
     assert said.endswith("not built with TPC yet; build it with: pytpc build")
+
+
+def test_a_folder_that_is_not_there(tmp_path):
+    (said,) = told(tmp_path / "gone", status=1).stderr.splitlines()
+    assert "no such folder" in said
