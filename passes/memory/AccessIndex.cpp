@@ -106,6 +106,24 @@ AccessIndex::Found<AccessIndex::Reads> AccessIndex::readsOf(const Location &L) {
   return Out;
 }
 
+SmallVector<StoreInst *, 8> AccessIndex::storesAt(const Location &L) const {
+  SmallSetVector<StoreInst *, 8> At;
+  StoreIndex.eachAt(L, [&](unsigned N) {
+    if (Alias.mayBe(Stores[N].Where, L))
+      At.insert(cast<StoreInst>(Stores[N].I));
+  });
+  return At.takeVector();
+}
+
+SmallVector<LoadInst *, 8> AccessIndex::loadsAt(const Location &L) const {
+  Reads At;
+  LoadIndex.eachAt(L, [&](unsigned N) {
+    if (Alias.mayBe(Loads[N].Where, L))
+      At.insert(cast<LoadInst>(Loads[N].I));
+  });
+  return At.takeVector();
+}
+
 ArrayRef<const Access *> AccessIndex::partsOf(const Location &Object) {
   auto [It, New] = Parts.try_emplace(Object);
   if (!New)

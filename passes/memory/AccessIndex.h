@@ -57,6 +57,9 @@ public:
   Found<Writes> writesOf(const Location &L);
   /// The loads that can read the value of the variable at \p L.
   Found<Reads> readsOf(const Location &L);
+  /// The same without copies: the stores to \p L and the loads from it.
+  llvm::SmallVector<llvm::StoreInst *, 8> storesAt(const Location &L) const;
+  llvm::SmallVector<llvm::LoadInst *, 8> loadsAt(const Location &L) const;
 
   /// True if copies of whole objects can bring the value at \p From to \p To,
   /// or the two can be the same variable.

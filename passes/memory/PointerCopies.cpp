@@ -20,9 +20,8 @@ bool PointerCopies::isAt(const Value *Place, const Location &L,
 SmallVector<StoreInst *, 4> PointerCopies::storesTo(const Location &L,
                                                     const Value *Object) {
   SmallVector<StoreInst *, 4> Found;
-  for (Instruction *Write : Accesses.writesOf(L).Own)
-    if (auto *Store = dyn_cast<StoreInst>(Write);
-        Store && Store->getValueOperand()->getType()->isPointerTy() &&
+  for (StoreInst *Store : Accesses.storesAt(L))
+    if (Store->getValueOperand()->getType()->isPointerTy() &&
         !isa<Constant>(Store->getValueOperand()) &&
         isAt(Store->getPointerOperand(), L, Object))
       Found.push_back(Store);
@@ -32,7 +31,7 @@ SmallVector<StoreInst *, 4> PointerCopies::storesTo(const Location &L,
 SmallVector<LoadInst *, 4> PointerCopies::loadsFrom(const Location &L,
                                                     const Value *Object) {
   SmallVector<LoadInst *, 4> Found;
-  for (LoadInst *Load : Accesses.readsOf(L).Own)
+  for (LoadInst *Load : Accesses.loadsAt(L))
     if (Load->getType()->isPointerTy() &&
         isAt(Load->getPointerOperand(), L, Object))
       Found.push_back(Load);

@@ -43,7 +43,8 @@ void PointsTo::addAllocated(const Location &L,
                             ArrayRef<const GEPOperator *> Chain, bool Walks,
                             Locations &Out) {
   // A library allocates for many objects at one place: vectors, matrices.
-  bool IsArray = Sources.has(*cast<CallBase>(L.Root)->getFunction());
+  bool IsArray =
+      !Chain.empty() && Sources.has(*cast<CallBase>(L.Root)->getFunction());
   Location Here = L;
   int64_t Bytes = L.RootItem.isNumber() ? L.RootItem.Number : 0;
   bool Known = L.RootItem.Number != Nth::Any;
@@ -111,19 +112,10 @@ void PointsTo::addPointees(const Value *Pointer, Locations &Out) {
       Chain.push_back(GEP);
     Base = throughCasts(GEP->getPointerOperand());
   }
-  Locations Objects;
   bool Rooted = isa<GlobalVariable>(Base) || isa<AllocaInst>(Base);
-  if (Rooted || isAllocation(Base))
-    Objects.push_back({Base, {}});
-  else if (auto It = Targets.find(Base); It != Targets.end())
-    Objects = It->second;
-  // Besides the known objects there are unknown ones. Of those only the path is
-  // known, from its first class on.
-  if (!Rooted && !Complete.contains(Base))
-    Objects.insert(Objects.begin(), Location());
   // A pointer that moves on by an element each time it is computed.
   bool Walks = !Rooted && !isa<Argument>(Base);
-  for (const Location &L : Objects) {
+  auto Follow = [&](const Location &L) {
     if (!isa_and_nonnull<CallBase>(L.Root) || !L.Path.empty())
       followChain(L, Chain, Walks, Out);
     // If the path names the class, it means all objects of the class.
@@ -133,7 +125,15 @@ void PointsTo::addPointees(const Value *Pointer, Locations &Out) {
                return S && !S->isLiteral();
              }))
       addAllocated(L, Chain, isa<PHINode>(Base), Out);
-  }
+  };
+  // Besides the known objects there are unknown ones. Of those only the path is
+  // known, from its first class on.
+  if (!Rooted && !Complete.contains(Base))
+    Follow(Location());
+  if (Rooted || isAllocation(Base))
+    Follow({Base, {}});
+  else if (auto It = Targets.find(Base); It != Targets.end())
+    for_each(It->second, Follow);
 }
 
 /// Adds the place that \p Chain, whose last element is next to \p L, leads to

@@ -149,23 +149,73 @@ void PointsToSolver::makeNodes() {
   }
 }
 
+/// The node that must be complete so that all objects that \p V leads to are
+/// known. A field is known: it belongs to any object of its class.
+unsigned PointsToSolver::neededBy(const Value *V) const {
+  while (true) {
+    if (const auto *GEP = dyn_cast<GEPOperator>(V)) {
+      const auto *Struct = dyn_cast<StructType>(GEP->getSourceElementType());
+      if (Struct && !Struct->isLiteral() && GEP->getNumIndices() > 1)
+        return AllKnown;
+      V = GEP->getPointerOperand();
+    } else if (const auto *Freeze = dyn_cast<FreezeInst>(V)) {
+      V = Freeze->getOperand(0);
+    } else if (isa<AllocaInst>(V) || isa<GlobalVariable>(V) ||
+               isa<ConstantPointerNull>(V) || isa<UndefValue>(V)) {
+      return AllKnown;
+    } else {
+      return numberOf(V);
+    }
+  }
+}
+
+/// Finds the nodes that each node and each store of a pointer depends on: they
+/// are asked for in each round.
+void PointsToSolver::linkNodes() {
+  for (auto [Number, N] : enumerate(Nodes))
+    Numbers[N.V] = Number;
+  Grown.resize(Nodes.size());
+  for (Node &N : Nodes) {
+    for (const Value *Source : N.Sources) {
+      N.Bases.push_back(baseOf(Source));
+      N.Needs.push_back(neededBy(Source));
+    }
+    if (N.Container) {
+      N.Base = baseOf(N.Container);
+      N.Needs.push_back(neededBy(N.Container));
+    } else if (const auto *Load = dyn_cast<LoadInst>(N.V)) {
+      N.Base = baseOf(Load->getPointerOperand());
+      N.ReadNeeds = neededBy(Load->getPointerOperand());
+    }
+  }
+  for (PointerStore &S : PointerStores) {
+    S.To = baseOf(S.I->getPointerOperand());
+    S.From = baseOf(S.I->getValueOperand());
+    S.Needs = neededBy(S.I->getValueOperand());
+  }
+}
+
+/// The number of the slot of \p L.
+unsigned PointsToSolver::slotOf(const Location &L) {
+  auto [It, New] =
+      SlotNumbers.try_emplace(LocationIndex::slotOf(L), SlotGrown.size());
+  if (New)
+    SlotGrown.push_back(0);
+  return It->second;
+}
+
 /// True if a source of \p N has gained targets.
 bool PointsToSolver::isDue(const Node &N) const {
-  if (!N.Done || (N.Container && hasGrown(N.Container, N.Done)) ||
-      any_of(N.Sources, [&](const Value *V) { return hasGrown(V, N.Done); }))
-    return true;
-  const auto *Load = dyn_cast<LoadInst>(N.V);
-  return Load && (hasGrown(Load->getPointerOperand(), N.Done) ||
-                  any_of(N.Where, [&](const Location &L) {
-                    return SlotGrown.lookup(LocationIndex::slotOf(L)) > N.Done;
-                  }));
+  return !N.Done || hasGrown(N.Base, N.Done) ||
+         any_of(N.Bases, [&](unsigned B) { return hasGrown(B, N.Done); }) ||
+         any_of(N.Slots, [&](unsigned S) { return SlotGrown[S] > N.Done; });
 }
 
 /// The number of the content of \p L.
 unsigned PointsToSolver::contentAt(const Location &L, bool Unrooted) {
   auto [It, New] = ContentIndex[Unrooted].try_emplace(L, Contents.size());
   if (New)
-    Contents.push_back({L, Unrooted});
+    Contents.push_back({L, Unrooted, slotOf(L)});
   return It->second;
 }
 
@@ -177,7 +227,7 @@ void PointsToSolver::collect(unsigned Number, Locations &Out) {
     collect(contentAt({nullptr, Where.Path}, /*Unrooted=*/true), Out);
   Content &C = Contents[Number];
   if (C.Found.size() < MaxLocations &&
-      (!C.Done || SlotGrown.lookup(LocationIndex::slotOf(Where)) > C.Done)) {
+      (!C.Done || SlotGrown[C.Slot] > C.Done)) {
     auto Add = [&](unsigned Number) {
       const PointerStore &S = PointerStores[Number];
       if (S.Grown > C.Done && any_of(S.Where, [&](const Location &To) {
@@ -198,18 +248,28 @@ void PointsToSolver::collect(unsigned Number, Locations &Out) {
 
 /// Adds the targets of \p N's sources known so far; true if there are new ones.
 bool PointsToSolver::update(Node &N) {
-  Locations Found = R.Targets.lookup(N.V);
+  Locations Found;
+  if (auto It = R.Targets.find(N.V); It != R.Targets.end())
+    Found = It->second;
   size_t Before = Found.size();
   if (Before >= MaxLocations) {
     N.Done = Now;
     return false;
   }
-  for (const Value *Source : N.Sources)
-    R.addPointees(Source, Found);
-  if (N.Container)
+  // What has not grown has nothing to add.
+  auto IsNew = [&](unsigned Base) { return !N.Done || hasGrown(Base, N.Done); };
+  for (auto [Source, Base] : zip_equal(N.Sources, N.Bases))
+    if (IsNew(Base))
+      R.addPointees(Source, Found);
+  if (N.Container && IsNew(N.Base))
     R.addElements(N.Container, Found);
   if (const auto *Load = dyn_cast<LoadInst>(N.V)) {
-    N.Where = R.resolve(Load->getPointerOperand(), true);
+    if (IsNew(N.Base)) {
+      N.Where = R.resolve(Load->getPointerOperand(), true);
+      N.Slots.clear();
+      for (const Location &L : N.Where)
+        N.Slots.push_back(slotOf(L));
+    }
     for (const Location &L : N.Where) {
       // Elements that are kept in nodes point to each other.
       if (L.isElement())
@@ -224,7 +284,7 @@ bool PointsToSolver::update(Node &N) {
   if (Found.size() == Before)
     return false;
   R.Targets[N.V] = std::move(Found);
-  Grown[N.V] = ++Now;
+  Grown[&N - Nodes.begin()] = ++Now;
   return true;
 }
 
@@ -232,14 +292,15 @@ bool PointsToSolver::update(Node &N) {
 /// of them; true if there is news.
 bool PointsToSolver::update(PointerStore &S, unsigned Number) {
   bool More = false;
-  if (!S.Done || hasGrown(S.I->getPointerOperand(), S.Done))
+  if (!S.Done || hasGrown(S.To, S.Done))
     for (const Location &L : R.resolve(S.I->getPointerOperand(), true))
       if (none_of(S.Where, [&](const Location &K) { return K.isSame(L); })) {
         S.Where.push_back(L);
+        S.Slots.push_back(slotOf(L));
         PointerStoreIndex.add(Number, L);
         More = true;
       }
-  if (!S.Done || hasGrown(S.I->getValueOperand(), S.Done)) {
+  if (!S.Done || hasGrown(S.From, S.Done)) {
     R.addPointees(S.I->getValueOperand(), S.Stored);
     More = true;
   }
@@ -247,8 +308,8 @@ bool PointsToSolver::update(PointerStore &S, unsigned Number) {
   if (!More)
     return false;
   S.Grown = ++Now;
-  for (const Location &L : S.Where)
-    SlotGrown[LocationIndex::slotOf(L)] = Now;
+  for (unsigned Slot : S.Slots)
+    SlotGrown[Slot] = Now;
   return true;
 }
 
@@ -264,34 +325,11 @@ bool PointsToSolver::propagate() {
   return Changed && !Budget::isSpent();
 }
 
-/// True if all objects that \p V leads to are known, provided that those of the
-/// pointers in \p Complete are. A field is known: it belongs to any object of
-/// its class.
-static bool isComplete(const Value *V,
-                       const DenseSet<const Value *> &Complete) {
-  while (true) {
-    if (const auto *GEP = dyn_cast<GEPOperator>(V)) {
-      const auto *Struct = dyn_cast<StructType>(GEP->getSourceElementType());
-      if (Struct && !Struct->isLiteral() && GEP->getNumIndices() > 1)
-        return true;
-      V = GEP->getPointerOperand();
-    } else if (const auto *Freeze = dyn_cast<FreezeInst>(V)) {
-      V = Freeze->getOperand(0);
-    } else {
-      return isa<AllocaInst>(V) || isa<GlobalVariable>(V) ||
-             isa<ConstantPointerNull>(V) || isa<UndefValue>(V) ||
-             Complete.contains(V);
-    }
-  }
-}
-
-/// Finds the locals that are copied to, or passed to functions that are not
+/// Notes the pointers to what is copied to, or passed to functions that are not
 /// analysed.
-void PointsToSolver::findFilled() {
+void PointsToSolver::noteFilling() {
   auto Add = [&](const Value *Pointer) {
-    for (const Location &L : R.resolve(Pointer, false))
-      if (isa_and_nonnull<AllocaInst>(L.Root))
-        Filled.insert(L.Root);
+    Fillings.push_back({Pointer, baseOf(Pointer)});
   };
   for (Function &F : definedFunctions(M))
     for (const Instruction &I : instructions(F)) {
@@ -308,32 +346,59 @@ void PointsToSolver::findFilled() {
     }
 }
 
+/// Finds the locals that are filled, as far as the pointers to them are known.
+void PointsToSolver::findFilled() {
+  for (Filling &Each : Fillings) {
+    if (Budget::isSpent())
+      return;
+    if (Each.Done && !hasGrown(Each.Base, Each.Done))
+      continue;
+    Each.Done = Now;
+    for (const Location &L : R.resolve(Each.Pointer, false))
+      if (isa_and_nonnull<AllocaInst>(L.Root))
+        Filled.insert(L.Root);
+  }
+}
+
+/// The pointers that are stored at \p L, which many loads read.
+PointsToSolver::StoredAt &PointsToSolver::storedAt(const Location &L) {
+  auto [It, New] = StoredIndex.try_emplace(L, Stored.size());
+  if (!New)
+    return Stored[It->second];
+  StoredAt &At = Stored.emplace_back();
+  PointerStoreIndex.eachAt(L, [&](unsigned S) {
+    const PointerStore &Store = PointerStores[S];
+    if (any_of(Store.Where,
+               [&](const Location &To) { return Alias.mayBe(To, L); }))
+      At.Needs.push_back(Store.Needs);
+  });
+  At.IsComplete = !At.Needs.empty();
+  return At;
+}
+
 /// True if all pointers that a load finds in memory are complete: it reads
 /// fields and variables in which the program stores such pointers and which
 /// other code cannot write.
-bool PointsToSolver::findsComplete(const Node &Load) const {
+bool PointsToSolver::findsComplete(const Node &Load) {
   // Later rounds may find what it reads.
   if (Load.Where.empty())
-    return isComplete(cast<LoadInst>(Load.V)->getPointerOperand(), R.Complete);
-  bool Stored = false;
+    return isComplete(Load.ReadNeeds);
+  bool Any = false;
   for (const Location &L : Load.Where) {
     bool IsKnown = L.Root ? !isa<AllocaInst>(L.Root) || !Filled.contains(L.Root)
                           : L.Path.back().isField();
     if (!IsKnown)
       return false;
-    bool Complete = true;
-    PointerStoreIndex.eachAt(L, [&](unsigned S) {
-      const PointerStore &Store = PointerStores[S];
-      if (!any_of(Store.Where,
-                  [&](const Location &To) { return Alias.mayBe(To, L); }))
-        return;
-      Stored = true;
-      Complete &= isComplete(Store.I->getValueOperand(), R.Complete);
-    });
-    if (!Complete)
+    StoredAt &At = storedAt(L);
+    if (At.Needs.empty())
+      continue;
+    Any = true;
+    // Pointers only stop being complete.
+    At.IsComplete = At.IsComplete && areComplete(At.Needs);
+    if (!At.IsComplete)
       return false;
   }
-  return Stored;
+  return Any;
 }
 
 /// True if only the calls that are known pass objects of this module for
@@ -363,33 +428,37 @@ bool PointsToSolver::keepsElements(const Node &N) const {
 bool PointsToSolver::findComplete() {
   bool First = !std::exchange(Assumed, true);
   if (First) {
-    for (const Node &N : Nodes) {
+    for (Node &N : Nodes) {
       const auto *Arg = dyn_cast<Argument>(N.V);
-      if (Arg ? !N.Sources.empty() && hasOwnCallers(*Arg)
-              : (N.Container && keepsElements(N)) ||
-                    isa<PHINode, SelectInst, LoadInst>(N.V))
+      N.IsComplete = Arg ? !N.Sources.empty() && hasOwnCallers(*Arg)
+                         : (N.Container && keepsElements(N)) ||
+                               isa<PHINode, SelectInst, LoadInst>(N.V);
+      if (N.IsComplete)
         R.Complete.insert(N.V);
     }
   }
   findFilled();
+  // Since the last time, stores may have gained places.
+  Stored.clear();
+  StoredIndex.clear();
   // The largest set that supports itself: removes pointers until no further one
   // must be removed.
   bool Fell = First;
   for (bool Changed = true; Changed;) {
     Changed = false;
-    for (Node &N : Nodes) {
+    for (auto [Number, N] : enumerate(Nodes)) {
       if (Budget::isSpent())
         return false;
-      if (!R.Complete.contains(N.V) ||
-          (R.Targets.lookup(N.V).size() < MaxLocations &&
-           (!isa<LoadInst>(N.V) || First || findsComplete(N)) &&
-           (!N.Container || isComplete(N.Container, R.Complete)) &&
-           all_of(N.Sources, [&](const Value *Source) {
-             return isComplete(Source, R.Complete);
-           })))
+      if (!N.IsComplete)
         continue;
+      auto It = R.Targets.find(N.V);
+      if ((It == R.Targets.end() || It->second.size() < MaxLocations) &&
+          (!isa<LoadInst>(N.V) || First || findsComplete(N)) &&
+          areComplete(N.Needs))
+        continue;
+      N.IsComplete = false;
       R.Complete.erase(N.V);
-      Grown[N.V] = ++Now;
+      Grown[Number] = ++Now;
       Changed = Fell = true;
     }
   }
@@ -398,6 +467,8 @@ bool PointsToSolver::findComplete() {
 
 void PointsToSolver::findTargets() {
   makeNodes();
+  linkNodes();
+  noteFilling();
   // If a pointer turns out to lead to more than it should, the pointers that
   // depend on it are computed again.
   while (findComplete() && !Budget::isSpent()) {

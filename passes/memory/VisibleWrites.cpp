@@ -89,13 +89,15 @@ VisibleWrites::sharedWrites(const Location &L) {
   if (!New)
     return All;
   AccessIndex::Found<Writes> Found = Accesses.writesOf(L);
-  // With too many writes, their readers are not computed, and the writes are
-  // collected again when needed.
+  // With too many writes, their readers are not computed.
   All.TooMany = Found.Own.size() + Found.Copied.size() > MaxNarrowed;
-  if (All.TooMany)
+  if (All.TooMany) {
+    Found.Own.insert(Found.Copied.begin(), Found.Copied.end());
+    All.Own = Found.Own.takeVector();
     return All;
-  All.Own = std::move(Found.Own);
-  All.Copied = std::move(Found.Copied);
+  }
+  All.Own = Found.Own.takeVector();
+  All.Copied = Found.Copied.takeVector();
   All.Narrowed = any_of(All.Own, [&](Instruction *Write) {
     return !Shared.isVisible(*Write, writtenBy(*Write, L));
   });
@@ -128,12 +130,12 @@ SmallVector<Instruction *, 8> VisibleWrites::writesOf(const Location &L,
     return {};
   const SharedWrites &All = sharedWrites(L);
   if (All.TooMany)
-    return allWrites(L).takeVector();
-  Writes Out = All.Own;
+    return All.Own;
+  Writes Out;
   std::optional<Reaching::Variable> Read = variableAt(Pointer, L);
-  Out.remove_if([&](Instruction *Write) {
-    return !Shared.reaches(*Write, writtenBy(*Write, L), At, Read);
-  });
+  for (Instruction *Write : All.Own)
+    if (Shared.reaches(*Write, writtenBy(*Write, L), At, Read))
+      Out.insert(Write);
   Out.insert(All.Copied.begin(), All.Copied.end());
   return Out.takeVector();
 }
@@ -142,12 +144,19 @@ ArrayRef<Instruction *> VisibleWrites::definitionsOf(const LoadInst &Load) {
   // While a caller iterates over the list, it may ask for other definitions.
   if (auto It = Definitions.find(&Load); It != Definitions.end())
     return *It->second;
-  Writes All;
-  for (const Location &L : Pointers.touched(Load))
-    for (Instruction *Write : writesOf(L, Load, placeOf(Load)))
-      All.insert(Write);
+  const Locations Touched = Pointers.touched(Load);
+  SmallVector<Instruction *, 8> Found;
+  if (Touched.size() == 1) {
+    Found = writesOf(Touched.front(), Load, placeOf(Load));
+  } else {
+    Writes All;
+    for (const Location &L : Touched)
+      for (Instruction *Write : writesOf(L, Load, placeOf(Load)))
+        All.insert(Write);
+    Found = All.takeVector();
+  }
   auto &Known = Definitions[&Load];
-  Known = std::make_unique<SmallVector<Instruction *, 8>>(All.takeVector());
+  Known = std::make_unique<SmallVector<Instruction *, 8>>(std::move(Found));
   return *Known;
 }
 

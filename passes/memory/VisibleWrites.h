@@ -68,9 +68,10 @@ private:
   using Writes = AccessIndex::Writes;
   /// The writes of a variable that is not local.
   struct SharedWrites {
-    Writes Own;    ///< of the variable itself
-    Writes Copied; ///< through copies of whole objects
-    bool TooMany = false;
+    llvm::SmallVector<llvm::Instruction *, 8> Own; ///< of the variable itself
+    /// Through copies of whole objects.
+    llvm::SmallVector<llvm::Instruction *, 8> Copied;
+    bool TooMany = false;  ///< Own has those of Copied, too
     bool Narrowed = false; ///< some read of it does not see all of Own
   };
   /// A part of an object, and how a function names it.
