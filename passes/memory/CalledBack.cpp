@@ -19,11 +19,13 @@ static cl::opt<unsigned> MaxParts(
     cl::desc(
         "Classes in an object that are searched for functions to call back"));
 
-/// True for functions that only free or copy their arguments, or belong to the
-/// language itself.
+/// True for functions that only free, copy or log their arguments, or belong to
+/// the language itself.
 static bool callsNothing(StringRef Name) {
   return givesMemoryBack(Name) || Name.starts_with("_Znw") ||
-         Name.starts_with("_Zna") || Name.starts_with("__") || Name == "memcmp";
+         Name.starts_with("_Zna") || Name.starts_with("__") ||
+         Name.starts_with("_ZN3ros7console") ||
+         Name.starts_with("rcutils_log") || Name == "memcmp";
 }
 
 /// True if \p Class, of which only the name is known, may store functions. The
