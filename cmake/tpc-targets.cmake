@@ -4,7 +4,8 @@
 # tpc.cmake's link options read these properties of a target:
 #
 #   _TPC_OFF  why it is not analysed and gets no reports; empty if it is
-#   _TPC_PACKAGE, _TPC_SOURCE_ROOT, _TPC_EXCLUDED, _TPC_STATIC_INFO
+#   _TPC_PACKAGE, _TPC_SOURCE_ROOT, _TPC_EXCLUDED, _TPC_STATIC_INFO, _TPC_MANIFEST,
+#   _TPC_PLANS
 #
 # Every link unit is listed in <build folder>/tpc/targets.tsv with its file and, if it is left out,
 # the reason, so that nothing is missing silently.
@@ -175,9 +176,26 @@ function(_tpc_finish_link_unit folder target obstacle is_plain)
     _tpc_find_reason_to_leave_out("${folder}" "${target}" left_out)
   endif()
   set(file "${binary}/tpc/${target}.json")
+  set(manifest "${binary}/tpc/${target}.link.json")
+  # What the processes found that this unit is part of: it is linked again when that changes. Until
+  # they are analysed, the file `later` is there.
+  set(plans "${binary}/tpc/${target}.plans")
+  get_directory_property(by_process DIRECTORY "${folder}" DEFINITION TPC_PROCESSES)
+  if(NOT by_process)
+    # Of a build that was interrupted.
+    file(REMOVE "${plans}/later")
+  endif()
+  if(NOT left_out AND NOT EXISTS "${plans}/changed")
+    file(WRITE "${plans}/changed" "")
+    if(by_process)
+      get_directory_property(base DIRECTORY "${folder}" DEFINITION TPC_BASE)
+      file(WRITE "${plans}/later" "${base}\n")
+    endif()
+  endif()
   set_target_properties("${target}" PROPERTIES
     _TPC_OFF "${left_out}" _TPC_PACKAGE "${package}" _TPC_SOURCE_ROOT "${root}"
-    _TPC_EXCLUDED "${excluded}" _TPC_STATIC_INFO "${file}")
+    _TPC_EXCLUDED "${excluded}" _TPC_STATIC_INFO "${file}"
+    _TPC_MANIFEST "${manifest}" _TPC_PLANS "${plans}")
   if(NOT obstacle)
     foreach(part _tpc_plugin _tpc_log _tpc_rules)
       get_directory_property(path DIRECTORY "${folder}" DEFINITION ${part})
@@ -185,10 +203,14 @@ function(_tpc_finish_link_unit folder target obstacle is_plain)
         set_property(TARGET "${target}" APPEND PROPERTY LINK_DEPENDS "${path}")
       endif()
     endforeach()
+    if(NOT left_out)
+      set_property(TARGET "${target}" APPEND PROPERTY LINK_DEPENDS "${plans}/changed")
+    endif()
   endif()
   if(left_out)
     # The findings of an earlier build do not apply to this one.
-    file(REMOVE "${file}")
+    file(REMOVE "${file}" "${manifest}")
+    file(REMOVE_RECURSE "${plans}")
   elseif(is_plain)
     set(left_out "the language was enabled after project(), or its compile rule was replaced")
   endif()

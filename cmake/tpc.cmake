@@ -245,6 +245,8 @@ macro(_tpc_instrument)
   _tpc_add_plugin_option("-tpc-exclude=$<TARGET_PROPERTY:_TPC_EXCLUDED>"
     "$<BOOL:$<TARGET_PROPERTY:_TPC_EXCLUDED>>")
   _tpc_add_plugin_option("-tpc-static-info=$<TARGET_PROPERTY:_TPC_STATIC_INFO>" "${_tpc_on}")
+  _tpc_add_plugin_option("-tpc-manifest=$<TARGET_PROPERTY:_TPC_MANIFEST>" "${_tpc_on}")
+  _tpc_add_plugin_option("-tpc-plans=$<TARGET_PROPERTY:_TPC_PLANS>" "${_tpc_on}")
   foreach(_tpc_setting PROFILE MAX_SECONDS MAX_MEMORY)
     if(NOT "${TPC_${_tpc_setting}}" STREQUAL "")
       string(TOLOWER "${_tpc_setting}" _tpc_option)

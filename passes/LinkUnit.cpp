@@ -15,9 +15,13 @@
 #include "memory/LocationTypes.h"
 #include "memory/PointsTo.h"
 #include "memory/VisibleWrites.h"
-#include "output/StaticInfo.h"
+#include "output/Findings.h"
 #include "params/ParamCallFinder.h"
 #include "params/ParamUsageFinder.h"
+#include "plan/ApplyPlans.h"
+#include "plan/Manifest.h"
+#include "plan/PlanWriter.h"
+#include "plan/PlansFolder.h"
 #include "results/GatherResults.h"
 #include "results/LoopDepths.h"
 #include "slice/BackwardPropagate.h"
@@ -29,7 +33,7 @@
 #include "llvm/IR/Module.h"
 #include "llvm/IR/PassTimingInfo.h"
 #include "llvm/Support/CommandLine.h"
-#include "llvm/Support/WithColor.h"
+#include "llvm/Support/FileSystem.h"
 
 using namespace llvm;
 
@@ -55,19 +59,6 @@ void registerAnalyses(ModuleAnalysisManager &AM) {
   AM.registerPass([] { return GatherResults(); });
   AM.registerPass([] { return LoopDepths(); });
 }
-
-/// The result of analysing a link unit.
-struct Findings {
-  UnitInfo Unit;
-  std::vector<Report> Reports;
-  std::vector<NamedRead> Names;
-  unsigned NotInstrumented = 0;
-  std::string Failure;
-  /// Why the analysis has not found everything that it could; empty if it has.
-  std::string Incomplete;
-  /// The functions that reports need were copied or inlined.
-  bool IsChanged = false;
-};
 
 namespace {
 /// The analysis manager of one analysed copy. The manager of the link cannot be
@@ -128,7 +119,8 @@ static std::vector<std::string> findSharedFunctions(Module &Seen,
 /// Plans a report for each comparison found in \p Analysed. The link unit is
 /// unchanged up to this call.
 static void planReports(AnalysedModule &Analysed, ModuleAnalysisManager &AM,
-                        const Options &Opts, Findings &Out) {
+                        const Options &Opts, Findings &Out,
+                        PlannedFindings &Of) {
   Module &Seen = Analysed.module();
   const GatheredResults &R = AM.getResult<GatherResults>(Seen);
   if (R.Comparisons.empty() && !(Opts.Constants && !R.Constants.empty()))
@@ -143,17 +135,18 @@ static void planReports(AnalysedModule &Analysed, ModuleAnalysisManager &AM,
   auto Plan = [&](const Comparison &C, bool IsUnsigned) {
     std::optional<Report> Plan = planReport(C, IsUnsigned, Analysed);
     if (!Plan) {
-      ++Out.NotInstrumented;
+      Of.WithoutReport.push_back(&C);
       return;
     }
     Plan->Object = Objects.objectOf(C, *Plan->Before);
     Out.Reports.push_back(std::move(*Plan));
+    Of.Reported.push_back(&C);
   };
   for (const Comparison &C : R.Comparisons) {
     // What has not been copied for its calls would report them all.
     if (!Out.Incomplete.empty() &&
         R.Shared.contains(const_cast<Function *>(C.place().getFunction()))) {
-      ++Out.NotInstrumented;
+      Of.WithoutReport.push_back(&C);
       continue;
     }
     StringRef Type = Reads[C.Reads.front()].Type;
@@ -163,8 +156,12 @@ static void planReports(AnalysedModule &Analysed, ModuleAnalysisManager &AM,
     for (const Comparison &C : R.Constants)
       Plan(C, /*IsUnsigned=*/false);
   for (const ParameterRead &Read : Reads)
-    if (std::optional<NamedRead> Name = planName(Read, Analysed))
+    if (std::optional<NamedRead> Name = planName(Read, Analysed)) {
       Out.Names.push_back(std::move(*Name));
+      Of.Named.push_back(&Read);
+    }
+  Out.NotInstrumented = Of.WithoutReport.size();
+  Out.Nodes = !Out.Reports.empty() || !Out.Names.empty();
 }
 
 /// Each round analyses the link unit again. Checks are rarely nested more
@@ -211,8 +208,11 @@ static Findings analyseSafely(Module &M, ModuleAnalysisManager &AM,
       Out->Unit = describe(Seen, Own->AM, Opts);
       Out->Incomplete = Limits.why();
       fail(Opts.InjectLateFailure);
-      if (Opts.Instrument)
-        planReports(Analysed, Own->AM, Opts, *Out);
+      PlannedFindings Of;
+      if (Opts.Instrument || !Opts.PlanOut.empty())
+        planReports(Analysed, Own->AM, Opts, *Out, Of);
+      if (!Opts.PlanOut.empty() && Out->Failure.empty())
+        writePlan(M, Analysed, Own->AM, Opts, *Out, Of);
       return;
     }
   });
@@ -226,19 +226,57 @@ static Findings analyseSafely(Module &M, ModuleAnalysisManager &AM,
   return std::move(*Out);
 }
 
-static void warn(const Options &Opts, const Twine &Text) {
-  WithColor::warning(errs(), "tpc") << Opts.LinkUnit << ": " << Text << '\n';
+/// Takes the findings from plans. A crash only makes the link unit get none.
+static Findings applySafely(Module &M, ModuleAnalysisManager &AM,
+                            const Options &Opts) {
+  auto Out = std::make_unique<Findings>();
+  bool Survived = runGuarded([&] {
+    const RuleTables &Rules = AM.getResult<RuleTableAnalysis>(M);
+    Out->Failure = Rules.Error;
+    if (Out->Failure.empty())
+      applyPlans(M, *Rules.Tables, Opts, *Out);
+  });
+  if (!Survived) {
+    bool IsChanged = Out.release()->IsChanged;
+    Out = std::make_unique<Findings>();
+    Out->Failure = "the plans crashed TPC";
+    Out->IsChanged = IsChanged;
+  }
+  return std::move(*Out);
+}
+
+/// Writes what this link needs, so that it can be repeated.
+static void writeManifest(const Options &Opts) {
+  std::string Why;
+  if (!runGuarded([&] {
+        if (Error E = writeJsonText(describeLink(Opts), Opts.Manifest))
+          Why = toString(std::move(E));
+      }))
+    Why = "it crashed";
+  if (!Why.empty())
+    warn(Opts, "cannot write the manifest: " + Why);
 }
 
 PreservedAnalyses LinkUnitPass::run(Module &M, ModuleAnalysisManager &AM) {
   const Options &Opts = AM.getResult<OptionsAnalysis>(M);
+  if (!Opts.Manifest.empty())
+    writeManifest(Opts);
+  // That of an earlier link is about another program.
+  if (!Opts.PlanOut.empty() && Opts.Plans.empty())
+    sys::fs::remove(Opts.PlanOut);
   if (!Opts.Analyse)
     return PreservedAnalyses::all();
-  Findings F = analyseSafely(M, AM, Opts);
+  if (isAnalysedLater()) {
+    // What an earlier link reported, this one does not.
+    sys::fs::remove(Opts.StaticInfo);
+    return PreservedAnalyses::all();
+  }
+  Findings F = Opts.Plans.empty() ? analyseSafely(M, AM, Opts)
+                                  : applySafely(M, AM, Opts);
   if (F.Failure.empty() && Opts.Instrument) {
     // The module is verified with both.
     SmallVector<Instruction *, 0> Names = insertNames(M, F.Names);
-    if (!F.Reports.empty() || !F.Names.empty())
+    if (F.Nodes)
       append_range(Names,
                    insertNodes(M, *AM.getResult<RuleTableAnalysis>(M).Tables));
     F.Failure = insertReports(M, F.Reports);
@@ -296,9 +334,28 @@ static OptimizationLevel levelOf(const Module &M) {
   return Level;
 }
 
+/// Keeps all later passes and the code generator from optimising \p M.
+static void leaveUnoptimised(Module &M) {
+  for (Function &F : M) {
+    if (F.isDeclaration() || F.hasFnAttribute(Attribute::AlwaysInline))
+      continue;
+    for (Attribute::AttrKind Kind :
+         {Attribute::OptimizeForSize, Attribute::MinSize})
+      F.removeFnAttr(Kind);
+    F.addFnAttr(Attribute::NoInline);
+    F.addFnAttr(Attribute::OptimizeNone);
+  }
+}
+
 PreservedAnalyses PrelinkPass::run(Module &M, ModuleAnalysisManager &AM) {
-  if (!AM.getResult<OptionsAnalysis>(M).Prelink)
+  const Options &Opts = AM.getResult<OptionsAnalysis>(M);
+  if (!Opts.Prelink)
     return PreservedAnalyses::all();
+  // It is linked again, so this program is only used during the build.
+  if (Opts.Analyse && isAnalysedLater()) {
+    leaveUnoptimised(M);
+    return PB.buildLTOPreLinkDefaultPipeline(OptimizationLevel::O0).run(M, AM);
+  }
   // The pipeline is built inside the pass because its level is known only once
   // the module is read.
   return PB.buildLTOPreLinkDefaultPipeline(levelOf(M)).run(M, AM);

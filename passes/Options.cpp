@@ -1,13 +1,16 @@
 //===- Options.cpp --------------------------------------------------------===//
 #include "Options.h"
 
+#include "plan/CommandLine.h"
+#include "plan/PlansFolder.h"
+
 #include "llvm/ADT/SmallString.h"
 #include "llvm/ADT/StringExtras.h"
 #include "llvm/IR/Function.h"
 #include "llvm/Support/CommandLine.h"
 #include "llvm/Support/FileSystem.h"
-#include "llvm/Support/MemoryBuffer.h"
 #include "llvm/Support/Path.h"
+#include "llvm/Support/WithColor.h"
 
 using namespace llvm;
 
@@ -50,6 +53,18 @@ static cl::opt<bool>
     PrelinkOpt("tpc-prelink", cl::cat(Category), cl::init(true),
                cl::desc("Run the optimisation that was left to the link "
                         "(default: yes)"));
+static cl::opt<std::string>
+    ManifestOpt("tpc-manifest", cl::cat(Category),
+                cl::desc("File for what this link needs, so that another link "
+                         "can repeat it (JSON)"));
+static cl::opt<std::string>
+    PlanOutOpt("tpc-plan-out", cl::cat(Category),
+               cl::desc("File for the findings, which -tpc-plan inserts in "
+                        "another link (JSON)"));
+static cl::list<std::string>
+    PlanOpt("tpc-plan", cl::cat(Category),
+            cl::desc("Insert the findings of this file, without an analysis; "
+                     "may be repeated"));
 static cl::opt<unsigned> MaxSecondsOpt(
     "tpc-max-seconds", cl::cat(Category), cl::init(120),
     cl::desc("Limit of the analysis in seconds of processor time (default: "
@@ -82,14 +97,10 @@ static cl::opt<Failure>
 /// process. The module of a link is always called ld-temp.o, and the linker
 /// tells a plugin nothing else.
 static void readOwnCommandLine(Options &O) {
-  auto Buffer = MemoryBuffer::getFileAsStream("/proc/self/cmdline");
-  if (!Buffer)
-    return;
-  SmallVector<StringRef, 64> Words;
-  (*Buffer)->getBuffer().split(Words, '\0');
+  const std::vector<std::string> Words = ownCommandLine();
   O.SharedLibrary =
       is_contained(Words, "-shared") || is_contained(Words, "--shared");
-  const auto *Output = find(Words, "-o");
+  auto Output = find(Words, "-o");
   if (O.LinkUnit.empty() && Output != Words.end() && Output + 1 != Words.end())
     O.LinkUnit = sys::path::filename(Output[1]).str();
 }
@@ -116,6 +127,10 @@ Options OptionsAnalysis::run(Module &, ModuleAnalysisManager &) {
   O.Instrument = InstrumentOpt;
   O.Constants = ConstantsOpt;
   O.Prelink = PrelinkOpt;
+  O.Manifest = ManifestOpt;
+  O.PlanOut = PlanOutOpt;
+  O.Plans.assign(PlanOpt.begin(), PlanOpt.end());
+  append_range(O.Plans, plansOfFolder());
   O.MaxSeconds = MaxSecondsOpt;
   O.MaxMemory = MaxMemoryOpt;
   O.InjectFailure = InjectFailureOpt;
@@ -159,7 +174,7 @@ bool Options::isUserSource(StringRef Path) const {
 }
 
 std::string Options::relative(StringRef Path) const {
-  if (SourceRoot.empty() || !isBelow(Path, SourceRoot))
+  if (KeepAbsolute || SourceRoot.empty() || !isBelow(Path, SourceRoot))
     return Path.str();
   return Path.drop_front(StringRef(SourceRoot).rtrim('/').size())
       .ltrim('/')
@@ -180,6 +195,10 @@ bool UserSources::has(const Function &F) {
 
 bool UserSources::has(const DILocation *Loc) {
   return Loc && has(Loc->getFile());
+}
+
+void warn(const Options &Opts, const Twine &Text) {
+  WithColor::warning(errs(), "tpc") << Opts.LinkUnit << ": " << Text << '\n';
 }
 
 std::string pathOf(const DILocation *Loc) {

@@ -7,6 +7,7 @@
 
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/StringRef.h"
+#include "llvm/ADT/Twine.h"
 #include "llvm/IR/DebugInfoMetadata.h"
 #include "llvm/IR/PassManager.h"
 
@@ -30,8 +31,12 @@ struct Options {
   bool Instrument = true;
   bool Constants = false; ///< also report comparisons with constants
   bool Prelink = true;
-  unsigned MaxSeconds = 0; ///< for the analysis; 0: no limit
-  unsigned MaxMemory = 0;  ///< for the analysis, in MiB; 0: no limit
+  std::string Manifest; ///< where what this link needs is written, if anywhere
+  std::string PlanOut;  ///< where the plan of the findings is written, if so
+  std::vector<std::string> Plans; ///< findings to insert without an analysis
+  bool KeepAbsolute = false;      ///< relative() changes nothing
+  unsigned MaxSeconds = 0;        ///< for the analysis; 0: no limit
+  unsigned MaxMemory = 0;         ///< for the analysis, in MiB; 0: no limit
   Failure InjectFailure = Failure::None;
   Failure InjectLateFailure = Failure::None;
 
@@ -78,6 +83,9 @@ private:
   const Options &Opts;
   llvm::DenseMap<const llvm::DIFile *, bool> Known;
 };
+
+/// Prints one line of warning about the link unit.
+void warn(const Options &Opts, const llvm::Twine &Text);
 
 /// The absolute path of the file of \p Loc, without `.` and `..`; empty if
 /// there is no location.

@@ -84,7 +84,8 @@ static std::vector<std::string> passOptions(const Environment &Around,
   std::vector<std::string> Options = {
       "-tpc-link-unit=" + Unit, "-tpc-package=" + Around.Package,
       "-tpc-source-root=" + Around.SourceRoot.string(),
-      "-tpc-static-info=" + (Folder / "tpc" / (Unit + ".json")).string()};
+      "-tpc-static-info=" + (Folder / "tpc" / (Unit + ".json")).string(),
+      "-tpc-manifest=" + (Folder / "tpc" / (Unit + ".link.json")).string()};
   if (!Around.Profile.empty())
     Options.push_back("-tpc-profile=" + Around.Profile);
   if (!Around.MaxSeconds.empty())

@@ -4,6 +4,7 @@
 #include "Options.h"
 #include "Rules.h"
 #include "instrument/HeldNumbers.h"
+#include "instrument/NeverRun.h"
 #include "instrument/VirtualRules.h"
 #include "params/ParameterObjects.h"
 #include "params/Texts.h"
@@ -12,9 +13,7 @@
 
 #include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/ADT/Statistic.h"
-#include "llvm/Analysis/InlineCost.h"
 #include "llvm/IR/DebugInfo.h"
-#include "llvm/IR/InlineAsm.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/IntrinsicInst.h"
@@ -32,7 +31,6 @@ using namespace llvm;
 
 #define DEBUG_TYPE "tpc-prepare"
 STATISTIC(NumInlined, "Library functions that are inlined to be analysed");
-STATISTIC(NumCopied, "Copies of functions for single calls");
 
 namespace tpc {
 
@@ -41,15 +39,6 @@ namespace tpc {
 static cl::opt<unsigned>
     MaxInlined("tpc-max-inlined", cl::Hidden, cl::init(100),
                cl::desc("Instructions of a library function that is inlined"));
-
-/// The instructions of \p F without markers that only some optimisation levels
-/// add.
-static unsigned sizeOf(const Function &F) {
-  return count_if(instructions(F), [](const Instruction &I) {
-    return !isa<AssumeInst>(I) && !I.isDebugOrPseudoInst() &&
-           !I.isLifetimeStartOrEnd();
-  });
-}
 
 /// Marks the small library functions in \p M for inlining; returns those that
 /// were not marked before. Functions that a rule describes stay calls.
@@ -142,6 +131,7 @@ static void prepare(Module &M, const Options &Opts,
   exposeHeldNumbers(M, Known);
   SmallVector<WeakVH, 0> Marked = markSmallLibraryFunctions(M, Opts, Known);
   inlineMarked(M, Marked);
+  removeNeverRun(M);
   nameVirtualCalls(M, *Tables);
   markOwnObjects(M, Known);
   // What follows the call of a function that always throws.
@@ -158,139 +148,6 @@ static void allowOptimisation(Module &M) {
       F.removeFnAttr(Attribute::OptimizeNone);
       F.removeFnAttr(Attribute::NoInline);
     }
-}
-
-/// Replaces calls of an alias by calls of the function: above -O0 the
-/// constructors of a class are one function with two names.
-static void callByOwnName(Module &M) {
-  for (GlobalAlias &Alias : M.aliases())
-    if (auto *F = dyn_cast<Function>(Alias.getAliasee());
-        F && !Alias.isInterposable() && !F->isInterposable())
-      Alias.replaceUsesWithIf(F, [](const Use &U) {
-        const auto *Call = dyn_cast<CallBase>(U.getUser());
-        return Call && Call->isCallee(&U);
-      });
-}
-
-/// True if a copy of \p F can stand for \p F. It cannot if another link unit
-/// may hold the definition that counts, if the addresses of labels are taken (a
-/// table elsewhere may hold them) or if it contains assembly, which may define
-/// symbols.
-static bool mayBeCopied(const Function &F) {
-  return !F.isDeclarationForLinker() && !F.isInterposable() &&
-         none_of(F,
-                 [](const BasicBlock &BB) { return BB.hasAddressTaken(); }) &&
-         none_of(instructions(F), [](const Instruction &I) {
-           const auto *Call = dyn_cast<CallBase>(&I);
-           const auto *Assembly =
-               Call ? dyn_cast<InlineAsm>(Call->getCalledOperand()) : nullptr;
-           return Call && (Call->cannotDuplicate() || Call->isMustTailCall() ||
-                           (Assembly && !Assembly->getAsmString().empty()));
-         });
-}
-
-/// The calls of \p F from other functions, in the order of the module: the
-/// order of a use list differs between two copies of a module.
-static SmallVector<CallBase *, 8> callsOf(Function &F) {
-  SmallPtrSet<CallBase *, 8> Calls;
-  SmallPtrSet<Function *, 8> Callers;
-  for (User *U : F.users())
-    if (auto *Call = dyn_cast<CallBase>(U);
-        Call && Call->getCalledFunction() == &F && Call->getFunction() != &F) {
-      Calls.insert(Call);
-      Callers.insert(Call->getFunction());
-    }
-  SmallVector<CallBase *, 8> Ordered;
-  if (Calls.empty())
-    return Ordered;
-  for (Function &Caller : *F.getParent())
-    if (Callers.contains(&Caller))
-      for (Instruction &I : instructions(Caller))
-        if (auto *Call = dyn_cast<CallBase>(&I); Call && Calls.contains(Call))
-          Ordered.push_back(Call);
-  return Ordered;
-}
-
-/// Inlines the functions in \p M whose comparisons count as their callers'.
-/// True if there are any.
-static bool inlineTransparent(Module &M, const Rules &Tables) {
-  bool Inlined = false;
-  for (Function &F : definedFunctions(M)) {
-    const DISubprogram *SP = F.getSubprogram();
-    if (!SP || !mayBeCopied(F) ||
-        !Tables.isTransparent(qualifiedName(SP->getLinkageName())) ||
-        !isInlineViable(F).isSuccess())
-      continue;
-    for (CallBase *Call : callsOf(F)) {
-      InlineFunctionInfo Info;
-      Inlined |= InlineFunction(*Call, Info, /*MergeAttributes=*/true,
-                                /*CalleeAAR=*/nullptr, /*InsertLifetime=*/false)
-                     .isSuccess();
-    }
-  }
-  return Inlined;
-}
-
-/// The copies stay in the program, so they must not make it noticeably larger.
-static cl::opt<unsigned> MaxAdded(
-    "tpc-max-added", cl::Hidden, cl::init(50000),
-    cl::desc("Instructions that copies of functions may add in one round"));
-
-/// A name for a copy of \p F; \p Number is the number of the last copy. It
-/// depends only on the names in the module. LLVM's own suffix for a name in use
-/// depends on the history of the module.
-static std::string copyName(const Function &F, unsigned &Number) {
-  std::string Name;
-  do
-    Name = (F.getName() + CopyMark + Twine(++Number)).str();
-  while (F.getParent()->getNamedValue(Name));
-  return Name;
-}
-
-/// Gives each call of the functions \p Names in \p M its own copy of the
-/// function, so that the arguments of one call are not mixed with those of
-/// another. True if something was copied.
-static bool separateCalls(Module &M, ArrayRef<std::string> Names) {
-  bool Changed = false;
-  size_t Added = 0;
-  for (const std::string &Name : Names) {
-    Function *F = M.getFunction(Name);
-    if (!F || !mayBeCopied(*F))
-      continue;
-    SmallVector<CallBase *, 8> Calls = callsOf(*F);
-    if (Calls.size() < 2)
-      continue;
-    size_t More = (Calls.size() - 1) * sizeOf(*F);
-    if (Added + More > MaxAdded) {
-      LLVM_DEBUG(dbgs() << "too large to be copied: " << Name << '\n');
-      continue;
-    }
-    Added += More;
-    unsigned Number = 0;
-    for (CallBase *Call : drop_begin(Calls)) {
-      ValueToValueMapTy Map;
-      Function *Copy = CloneFunction(F, Map);
-      Copy->setName(copyName(*F, Number));
-      Copy->setLinkage(GlobalValue::InternalLinkage);
-      Copy->setVisibility(GlobalValue::DefaultVisibility);
-      Copy->setComdat(nullptr);
-      Call->setCalledFunction(Copy);
-      Changed = true;
-      ++NumCopied;
-    }
-  }
-  return Changed;
-}
-
-Separation::Effect Separation::applyTo(Module &M) const {
-  callByOwnName(M);
-  Effect Done;
-  Done.Any = inlineTransparent(M, Tables);
-  for (const std::vector<std::string> &Names : Rounds) {
-    Done.LastRound = separateCalls(M, Names);
-    Done.Any |= Done.LastRound;
-  }
-  return Done;
 }
 
 //===----------------------------------------------------------------------===//
@@ -331,6 +188,7 @@ bool AnalysedModule::copy() {
     Opcodes.clear();
     Copy = std::move(Next);
     IsSeparated = Done.Any;
+    Copied = std::move(Done.Copied);
   }
   return Done.LastRound;
 }
@@ -434,7 +292,9 @@ PreservedAnalyses PreparePass::run(Module &M, ModuleAnalysisManager &AM) {
   allowOptimisation(M);
   callByOwnName(M);
   prepare(M, AM.getResult<OptionsAnalysis>(M), Rules.Tables);
-  separateCalls(M, namedByCalls(M, AM));
+  Copier Copies;
+  for (const std::string &Name : namedByCalls(M, AM))
+    Copies.separate(M.getFunction(Name));
   return PreservedAnalyses::none();
 }
 

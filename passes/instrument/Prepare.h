@@ -11,6 +11,8 @@
 #ifndef TPC_PREPARE_H
 #define TPC_PREPARE_H
 
+#include "instrument/Separation.h"
+
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/IR/InstrTypes.h"
 #include "llvm/IR/Instruction.h"
@@ -25,34 +27,6 @@ namespace tpc {
 struct Options;
 class Rules;
 struct Rule;
-
-/// Changes a program before reports are inserted, because a report inside a
-/// function stands for all of its calls. Functions whose comparisons count as
-/// their callers' are inlined, and functions whose calls must be distinguished
-/// are copied for each call. Applied to two copies of a program, the results
-/// are again the same program.
-class Separation {
-public:
-  /// \p Tables name the functions to inline.
-  explicit Separation(const Rules &Tables) : Tables(Tables) {}
-  /// Also copies each function of \p Names for each of its calls, after
-  /// everything added before.
-  void add(std::vector<std::string> Names) {
-    Rounds.push_back(std::move(Names));
-  }
-  void removeLast() { Rounds.pop_back(); }
-
-  /// What applyTo did.
-  struct Effect {
-    bool Any = false;
-    bool LastRound = false; ///< the names added last had an effect
-  };
-  Effect applyTo(llvm::Module &M) const;
-
-private:
-  const Rules &Tables;
-  std::vector<std::vector<std::string>> Rounds;
-};
 
 /// The analysed copy of a module to instrument. The original module does not
 /// change.
@@ -69,6 +43,8 @@ public:
 
   /// True if bringBack() changes the original module.
   bool isSeparated() const { return IsSeparated; }
+  /// The functions that separate() copied, round by round.
+  llvm::ArrayRef<std::vector<CopiedFunction>> copied() const { return Copied; }
   /// Applies everything that separate() did to the original module \p M, and
   /// maps the values of the analysed copy to it. False if the two are then not
   /// the same program.
@@ -91,6 +67,7 @@ private:
   Separation Calls;
   std::unique_ptr<llvm::Module> Copy;
   bool IsSeparated = false;
+  std::vector<std::vector<CopiedFunction>> Copied;
   /// The instructions that Copy had before it was prepared, in order. Each is
   /// now null or the value that promotion put in its place.
   std::vector<llvm::WeakTrackingVH> Instructions;

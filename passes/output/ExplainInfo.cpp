@@ -4,6 +4,7 @@
 #include "support/Names.h"
 
 #include "llvm/ADT/DenseSet.h"
+#include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/Support/CommandLine.h"
 
 #include <map>
@@ -18,16 +19,20 @@ static cl::opt<unsigned> MaxListed(
     "tpc-max-listed", cl::Hidden, cl::init(200),
     cl::desc("Blind spots and unexposed comparisons that are listed"));
 
+bool ListedPlaces::add(bool IsFirst) { return Count++ < MaxListed || IsFirst; }
+
 namespace {
 
-/// The entries to list: each place and parameter once, ordered by kind, place
-/// and name. A large link unit has millions, so only numbers are kept until it
-/// is known which few are written.
+/// The entries to list: each place and parameter once (or, if they are told
+/// apart, once for each function), ordered by kind, place and name. A large
+/// link unit has millions, so only numbers are kept until it is known which few
+/// are written.
 class Listing {
 public:
   using Place = std::tuple<std::string, unsigned, unsigned>;
   struct Entry {
     unsigned Kind, Place, Name, Index;
+    const Function *In = nullptr; // if functions are told apart
     auto key() const { return std::make_tuple(Kind, Place, Name); }
   };
 
@@ -42,12 +47,12 @@ public:
       NameOf.push_back(Names.at(R.Name));
   }
 
-  void add(unsigned Kind, const DILocation *Loc, unsigned Read,
-           unsigned Index) {
+  void add(unsigned Kind, const DILocation *Loc, unsigned Read, unsigned Index,
+           const Function *In) {
     auto [It, New] = PlaceOf.try_emplace(Loc, 0);
     if (New)
       Places[place(Loc)].push_back(Loc);
-    Waiting.push_back({{Kind, 0, nameOf(Read), Index}, Loc});
+    Waiting.push_back({{Kind, 0, nameOf(Read), Index, In}, Loc});
   }
 
   /// The parameter \p Name at \p P, as the place and name of an entry.
@@ -75,11 +80,15 @@ public:
       return std::tuple_cat(A.key(), std::tuple(A.Index)) <
              std::tuple_cat(B.key(), std::tuple(B.Index));
     });
-    Entries.erase(std::unique(Entries.begin(), Entries.end(),
-                              [](const Entry &A, const Entry &B) {
-                                return A.key() == B.key();
-                              }),
-                  Entries.end());
+    // The first of those alike; functions may be mixed in between.
+    Entry Last{~0U, 0, 0, 0};
+    SmallPtrSet<const Function *, 2> Known;
+    erase_if(Entries, [&](const Entry &E) {
+      if (E.key() != Last.key())
+        Known.clear();
+      Last = E;
+      return !Known.insert(E.In).second;
+    });
     return Entries;
   }
 
@@ -157,17 +166,21 @@ json::Array ExplainInfo::path(const Comparison &C) {
     json::Object O = placed(S.Loc);
     O["step"] = S.kindName();
     O["what"] = json::fixUTF8(S.What);
+    if (!S.Unit.empty())
+      O["unit"] = json::fixUTF8(S.Unit);
     List.push_back(std::move(O));
   }
   return List;
 }
 
-ListedPlaces ExplainInfo::notExposed(ArrayRef<SourcePlace> Comparisons) {
+ListedPlaces ExplainInfo::notExposed(ArrayRef<SourcePlace> Comparisons,
+                                     bool Every) {
   Listing All(Reads, Opts);
   for (auto [Index, N] : enumerate(Gathered.Others))
     if (const DILocation *Loc = Words.userPlace(N.Compared->place());
         Loc && N.Why == NotReported::NotExposed)
-      All.add(0, Loc, N.Compared->Read, Index);
+      All.add(0, Loc, N.Compared->Read, Index,
+              Every ? N.Compared->place().getFunction() : nullptr);
   ListedPlaces Out;
   const std::vector<Listing::Entry> &Sorted = All.sorted();
   DenseSet<std::pair<unsigned, unsigned>> Exposed;
@@ -179,8 +192,9 @@ ListedPlaces ExplainInfo::notExposed(ArrayRef<SourcePlace> Comparisons) {
     if (Exposed.contains({E.Place, E.Name}))
       continue;
     bool IsFirst = Listed.insert(E.Name).second;
-    if (Out.Count++ >= MaxListed && !IsFirst)
+    if (!Out.add(IsFirst) && !Every)
       continue;
+    Out.In.push_back(E.In);
     const ParameterComparison &Compared = *Gathered.Others[E.Index].Compared;
     json::Object O = placed(Words.userPlace(Compared.place()));
     O["source"] = json::fixUTF8(Reads[Compared.Read].Name);
@@ -189,7 +203,7 @@ ListedPlaces ExplainInfo::notExposed(ArrayRef<SourcePlace> Comparisons) {
   return Out;
 }
 
-ListedPlaces ExplainInfo::blindSpots() {
+ListedPlaces ExplainInfo::blindSpots(bool Every) {
   const std::vector<BlindSpot> Spots =
       findBlindSpots(Usage, Reads, Gathered, Calls, Words);
   Listing All(Reads, Opts);
@@ -202,7 +216,8 @@ ListedPlaces ExplainInfo::blindSpots() {
     const DILocation *Loc = It->second;
     // Values that end inside a library are only counted.
     if (Loc || !S.At->getDebugLoc())
-      All.add(S.Kind, Loc, S.Read, Index);
+      All.add(S.Kind, Loc, S.Read, Index,
+              Every ? S.At->getFunction() : nullptr);
   }
   ListedPlaces Out;
   DenseSet<std::pair<unsigned, unsigned>> Listed;
@@ -210,8 +225,9 @@ ListedPlaces ExplainInfo::blindSpots() {
     const BlindSpot &S = Spots[E.Index];
     bool IsFirst =
         S.Read != BlindSpot::None && Listed.insert({S.Kind, E.Name}).second;
-    if (Out.Count++ >= MaxListed && !IsFirst)
+    if (!Out.add(IsFirst) && !Every)
       continue;
+    Out.In.push_back(E.In);
     json::Object O = placed(Words.userPlace(*S.At));
     O["kind"] = S.kindName();
     O["parameter"] = S.Read == BlindSpot::None

@@ -43,6 +43,12 @@ struct SourcePlace {
 struct ListedPlaces {
   llvm::json::Array List;
   size_t Count = 0;
+  /// Of each in List, if all are wanted: the function of the analysed program.
+  std::vector<const llvm::Function *> In;
+
+  /// True if the next place is listed: there are few, or it is the first of its
+  /// kind and parameter. Counts it.
+  bool add(bool IsFirst);
 };
 
 /// Writes why a module's comparisons are found, and why others are not.
@@ -56,10 +62,13 @@ public:
   /// Comparisons with parameters in user code that no exposed statement depends
   /// on. Leaves out the places in \p Comparisons, where another instance of the
   /// same template is exposed.
-  ListedPlaces notExposed(llvm::ArrayRef<SourcePlace> Comparisons);
+  /// With \p Every, lists all of them, each once for each function.
+  ListedPlaces notExposed(llvm::ArrayRef<SourcePlace> Comparisons,
+                          bool Every = false);
 
-  /// The blind spots in user code, and those that have no place.
-  ListedPlaces blindSpots();
+  /// The blind spots in user code, and those that have no place; with \p Every
+  /// as above.
+  ListedPlaces blindSpots(bool Every = false);
 
 private:
   llvm::json::Object placed(const llvm::DILocation *Loc);

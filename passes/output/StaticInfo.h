@@ -30,6 +30,12 @@ UnitInfo describe(llvm::Module &M, llvm::ModuleAnalysisManager &AM,
 UnitInfo describeFailure(const Options &Opts, llvm::StringRef Why,
                          const llvm::json::Object *Known);
 
+/// The fields that every file has, also if the analysis failed.
+llvm::json::Object headerOf(const Options &Opts);
+
+/// \p O as one of UnitInfo::Comparisons.
+std::string writtenComparison(llvm::json::Object O);
+
 /// Writes \p Unit to a temporary file beside \p Path and renames that.
 llvm::Error writeJson(UnitInfo Unit, llvm::StringRef Path);
 

@@ -6,11 +6,11 @@
 #include "params/OtherNodes.h"
 #include "params/ParameterObjects.h"
 #include "params/Texts.h"
+#include "results/Keys.h"
 #include "support/Names.h"
 #include "support/Print.h"
 #include "support/SourcePath.h"
 
-#include "llvm/ADT/StringExtras.h"
 #include "llvm/IR/Constants.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/Module.h"
@@ -84,14 +84,7 @@ static ParameterRead readOf(CallBase &Call, const Rule &Row, Texts &Known) {
 
 static std::string keyOf(const ParameterRead &Read, const Options &Opts) {
   const DILocation *Loc = Read.Call->getDebugLoc();
-  if (!Loc)
-    return "";
-  return uuidOf(join(
-      std::initializer_list<std::string>{
-          "read", Opts.Package, Opts.LinkUnit, Opts.relative(pathOf(Loc)),
-          functionNameFor(*Loc), std::to_string(Loc->getLine()),
-          std::to_string(Loc->getColumn()), Read.Name},
-      "\n"));
+  return Loc ? readKey(KeyParts::of(*Loc, Read.Name), Opts) : "";
 }
 
 ParamCallFinder::Result ParamCallFinder::run(Module &M,

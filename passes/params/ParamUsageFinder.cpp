@@ -26,9 +26,7 @@ AnalysisKey ParamUsageFinder::Key;
 static constexpr double NanosecondsPerSecond = 1e9;
 
 unsigned ParameterUsage::lost() const {
-  return count_if(Ends, [](const ValueEnd &E) {
-    return E.Kind == ValueEnd::Mixed || E.Kind == ValueEnd::NoNumber;
-  });
+  return count_if(Ends, [](const ValueEnd &E) { return E.isLost(); });
 }
 
 SmallVector<Hop, 16> ParameterUsage::pathTo(unsigned Last) const {

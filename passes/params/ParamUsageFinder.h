@@ -59,6 +59,9 @@ struct ValueEnd {
   KindTy Kind;
   unsigned Read; ///< number of the read
   llvm::Instruction *At;
+
+  /// True if nothing is known of the value behind this place.
+  bool isLost() const { return Kind == Mixed || Kind == NoNumber; }
 };
 
 /// One comparison with the value of one parameter read.

@@ -10,12 +10,16 @@ using namespace llvm;
 
 namespace tpc {
 
-StringRef BlindSpot::kindName() const {
-  static constexpr StringRef Names[] = {
-      "lost_value",   "lost_outcome", "unknown_pointer", "many_targets",
-      "unread",       "dynamic_name", "outside_sources", "without_debug_info",
-      "indirect_call"};
-  return Names[Kind];
+static constexpr StringRef KindNames[] = {
+    "lost_value",   "lost_outcome", "unknown_pointer", "many_targets",
+    "unread",       "dynamic_name", "outside_sources", "without_debug_info",
+    "indirect_call"};
+
+StringRef BlindSpot::kindName() const { return KindNames[Kind]; }
+
+unsigned BlindSpot::rankOf(StringRef Name) {
+  const auto *Known = find(KindNames, Name);
+  return Known == std::end(KindNames) ? 0 : Known - std::begin(KindNames);
 }
 
 /// Why a value is not followed beyond \p I.

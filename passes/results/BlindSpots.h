@@ -38,6 +38,8 @@ struct BlindSpot {
   bool IsNoNumber = false; ///< a lost value: its type is not a number
 
   llvm::StringRef kindName() const;
+  /// The place in the order of kinds of the one called \p Name; 0 for others.
+  static unsigned rankOf(llvm::StringRef Name);
   /// A short description.
   std::string text(const ParamCallFinder::Result &Reads,
                    const Wording &Words) const;

@@ -2,6 +2,7 @@
 #include "results/Explain.h"
 
 #include "control/Throws.h"
+#include "support/Functions.h"
 #include "support/Names.h"
 
 #include "llvm/IR/IntrinsicInst.h"
@@ -55,7 +56,24 @@ static void join(std::vector<PathStep> &Out, PathStep S) {
   if (S.Kind > Last->Kind) {
     Last->Kind = S.Kind;
     Last->Loc = S.Loc;
+    Last->Unit = S.Unit;
   }
+}
+
+/// The link unit that has the line \p Loc of \p I, which may be inlined from a
+/// function of another unit.
+StringRef Explainer::unitOf(const Instruction &I, const DILocation *Loc) {
+  const Function *In = I.getFunction();
+  if (!In->hasFnAttribute(UnitMark)) // not a process
+    return "";
+  const DISubprogram *SP = Loc ? Loc->getScope()->getSubprogram() : nullptr;
+  if (SP && Functions.empty())
+    for (const Function &F : *In->getParent())
+      if (F.getSubprogram() && F.hasFnAttribute(UnitMark))
+        Functions.try_emplace(F.getSubprogram(), &F);
+  if (const Function *Own = Functions.lookup(SP))
+    In = Own;
+  return In->getFnAttribute(UnitMark).getValueAsString();
 }
 
 /// A step inside a library belongs to the line of user code that it runs for.
@@ -66,7 +84,7 @@ void Explainer::add(Steps &Out, PathStep::KindTy Kind, const Instruction &I,
   if (!Loc && IsEnd)
     Loc = I.getDebugLoc();
   if (Loc || IsEnd)
-    join(Out, {Kind, Loc, std::move(What)});
+    join(Out, {Kind, Loc, std::move(What), unitOf(I, Loc)});
 }
 
 std::string Explainer::compared(const Comparison &C) const {

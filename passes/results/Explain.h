@@ -38,6 +38,8 @@ struct PathStep {
   KindTy Kind;
   const llvm::DILocation *Loc; ///< null if it is not known
   std::string What;            ///< a short description
+  /// The link unit of a process that has the line; empty if not known.
+  llvm::StringRef Unit = "";
 
   llvm::StringRef kindName() const;
 };
@@ -69,6 +71,8 @@ private:
   std::string compared(const Comparison &C) const;
   void add(Steps &Out, PathStep::KindTy Kind, const llvm::Instruction &I,
            std::string What);
+  llvm::StringRef unitOf(const llvm::Instruction &I,
+                         const llvm::DILocation *Loc);
 
   const ParameterUsage &Usage;
   const SliceResult &Slice;
@@ -76,6 +80,8 @@ private:
   const ExternCallFinder::Result &Exposing;
   const CallGraphResult &Calls;
   Wording &Words;
+  /// The functions of a process by what the debug information knows them as.
+  llvm::DenseMap<const llvm::DISubprogram *, const llvm::Function *> Functions;
 };
 
 } // namespace tpc

@@ -8,6 +8,7 @@
 #include "control/IfStatements.h"
 #include "params/ParamCallFinder.h"
 #include "results/ConstantFinder.h"
+#include "results/Keys.h"
 #include "results/Sides.h"
 #include "support/Budget.h"
 #include "support/Names.h"
@@ -15,7 +16,6 @@
 #include "llvm/ADT/SetVector.h"
 #include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/ADT/Statistic.h"
-#include "llvm/ADT/StringExtras.h"
 #include "llvm/Analysis/ValueTracking.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/Module.h"
@@ -45,6 +45,11 @@ StringRef Comparison::typeName() const {
     return "constant";
   }
   llvm_unreachable("no such type");
+}
+
+std::string whatOf(const Comparison &C, const ParamCallFinder::Result &Reads) {
+  return C.Type == Comparison::Constant ? "constant " + C.ConstantName
+                                        : Reads[C.Reads.front()].Name;
 }
 
 StringRef Comparison::relation() const {
@@ -107,21 +112,15 @@ public:
   explicit Namer(const Options &Opts) : Opts(Opts) {}
 
   /// \p What is the parameter or the constant.
-  std::string keyOf(const Comparison &C, StringRef What) {
-    std::string Name = join(
-        std::initializer_list<std::string>{
-            Opts.Package, Opts.LinkUnit, Opts.relative(pathOf(C.Where)),
-            functionNameFor(*C.Where), std::to_string(C.Where->getLine()),
-            std::to_string(C.Where->getColumn()), What.str()},
-        "\n");
+  void name(Comparison &C, StringRef What) {
+    std::string Name = nameOfComparison(KeyParts::of(*C.Where, What), Opts);
     auto &Here =
         Places[Name][{C.place().getFunction(), C.Where->getInlinedAt()}];
     auto *Known = find(Here, &C.place());
-    if (size_t Ordinal = Known - Here.begin())
-      Name += "\n" + std::to_string(Ordinal);
+    C.Ordinal = Known - Here.begin();
     if (Known == Here.end())
       Here.push_back(&C.place());
-    return uuidOf(Name);
+    C.Key = comparisonKey(std::move(Name), C.Ordinal);
   }
 
 private:
@@ -343,9 +342,9 @@ GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
   countOthers(R);
   Namer Keys(Opts);
   for (Comparison &C : R.Comparisons)
-    C.Key = Keys.keyOf(C, Reads[C.Reads.front()].Name);
+    Keys.name(C, whatOf(C, Reads));
   for (Comparison &C : R.Constants)
-    C.Key = Keys.keyOf(C, "constant " + C.ConstantName);
+    Keys.name(C, whatOf(C, Reads));
   return R;
 }
 

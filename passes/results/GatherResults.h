@@ -9,6 +9,7 @@
 #ifndef TPC_GATHERRESULTS_H
 #define TPC_GATHERRESULTS_H
 
+#include "params/ParamCallFinder.h"
 #include "params/ParamUsageFinder.h"
 #include "slice/BackwardPropagate.h"
 
@@ -34,6 +35,8 @@ struct Comparison {
   unsigned Way; ///< see Decision
   unsigned OtherThresholds = 0;
   std::string Key; ///< stays the same in the next build
+  /// Its number among those at one place with one parameter.
+  unsigned Ordinal = 0;
   /// The place in user code. A comparison inside std::min, for example, has the
   /// place of the call of std::min.
   const llvm::DILocation *Where;
@@ -50,6 +53,9 @@ struct Comparison {
   /// The operator with the threshold on the right, or `flag`.
   llvm::StringRef relation() const;
 };
+
+/// The parameter or constant that \p C has in its key.
+std::string whatOf(const Comparison &C, const ParamCallFinder::Result &Reads);
 
 /// A comparison with a parameter that is not reported, and the reason.
 struct NotReported {

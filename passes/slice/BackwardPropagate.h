@@ -67,6 +67,8 @@ public:
   /// of a message that is published; none if it did not.
   std::optional<SliceEntry> shown(const llvm::CmpInst *Compare) const;
   unsigned numPredicates() const { return Predicates.size(); }
+  /// The predicates that an exposing statement depends on, in no order.
+  auto predicates() const { return llvm::make_first_range(Predicates); }
   /// The path from a predicate to its nearest exposing statement: the one that
   /// determined its distance.
   llvm::SmallVector<SliceStep, 16> pathOf(const SliceEntry &E) const;

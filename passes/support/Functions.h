@@ -7,6 +7,10 @@
 
 namespace tpc {
 
+/// The attribute of a function of a process: the link unit that defines it, the
+/// first one of several. tpc-merge sets it.
+inline constexpr llvm::StringLiteral UnitMark = "tpc-unit";
+
 /// The functions that \p M defines and that can run. Left out are definitions
 /// that only exist for inlining, which is so only above -O0
 /// (`available_externally`): they belong to another module, and without them

@@ -11,9 +11,10 @@ import fcntl
 import os
 import subprocess
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Protocol
 
 from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import check_rules
@@ -39,7 +40,13 @@ from pytpc.build.ros_parts import Part, parts_of, require_ros2, run_under
 from pytpc.python_analysis.rules_file import Rules, load_rules
 from pytpc.static.link_unit import LeftOut, LinkUnit
 from pytpc.static.sources import with_source_digests
-from pytpc.static.static_info import StaticInfo, is_python_file, load_link_unit, unit_files
+from pytpc.static.static_info import (
+    StaticInfo,
+    is_python_file,
+    load_link_unit,
+    manifest_of,
+    unit_files,
+)
 from pytpc.workspace.cmake_targets import ask_for_targets
 from pytpc.workspace.colcon import (
     PLAIN_BUILD,
@@ -63,6 +70,27 @@ from pytpc.workspace.ros2 import Ros2, how_to_source
 
 # How long a set-up script may take; those of large workspaces take seconds.
 _SET_UP_S = 120.0
+
+
+class Between(Protocol):
+    """What happens to the link units of a build between its two links; see `pytpc.processes`."""
+
+    def begin(self, folders: Sequence[Path]) -> None:
+        """Before the first one.
+
+        Args:
+            folders: the build folders of the packages that are built.
+        """
+
+    def at_once(self, folder: Path) -> bool:
+        """A package does not build so: let its units wait no longer; whether any did.
+
+        Args:
+            folder: its build folder.
+        """
+
+    def link_again(self) -> Collection[str]:
+        """After it: the packages with units that have to be linked again."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +120,7 @@ def build_workspace(
     *,
     on_output: Callable[[str], None] | None = None,
     on_scripts: Callable[[int, int], None] | None = None,
+    between: Between | None = None,
 ) -> BuildResult:
     """Build a workspace with analysis and instrumentation, and read what the analysis found.
 
@@ -102,6 +131,7 @@ def build_workspace(
         options: how it is to be built.
         on_output: called with each line that colcon writes.
         on_scripts: called with (scripts analysed, scripts in all).
+        between: analyses what the units are part of; None: each unit is analysed when it is linked.
 
     Raises:
         WorkspaceError: no packages, an unknown name, a folder inside a workspace, one that cannot
@@ -133,7 +163,7 @@ def build_workspace(
     bases = options.bases if options.bases is not None else Bases.of(workspace)
     refuse_characters(bases.root)
     ros2 = require_ros2(found)
-    build = _Build(workspace, bases, found, toolchain, options, ros2)
+    build = _Build(workspace, bases, found, toolchain, options, ros2, between)
     if build.with_ours:
         _require_toolchain(bases, chosen, toolchain)
     scripts = PythonBuild(
@@ -147,6 +177,7 @@ def build_workspace(
     with _alone_in(bases):
         alone = build.run(on_output)
         write_devel_space(bases, found)
+        build.run_again(alone, on_output)
         static = with_source_digests(_gather(scripts, alone.reasons, on_scripts))
         static.save(bases.static_info)
     seconds = time.monotonic() - began
@@ -163,6 +194,7 @@ class _Build:
     toolchain: Path
     options: BuildOptions
     ros2: Ros2 | None
+    between: Between | None = None
 
     @property
     def with_ours(self) -> bool:
@@ -177,19 +209,54 @@ class _Build:
             BuildError: a package builds neither with TPC nor without.
         """
         alone = _prepare(self.bases, self.packages, retry=self.options.retry)
+        if self.between is not None and self.with_ours:
+            chosen = packages_up_to(self.packages, self.options.packages)
+            self.between.begin([self.bases.build / package.name for package in chosen])
         for part in parts_of(self.packages, self.options.packages, self.bases, self.ros2):
             self._run_part(part, alone, on_output)
         run_under(self.bases, self.packages, self.ros2)
         return alone
 
+    def run_again(self, alone: LeftAlone, on_output: Callable[[str], None] | None) -> None:
+        """Link again what has changed since the first time, and what uses it.
+
+        Raises:
+            BuildError: a package builds neither with TPC nor without.
+        """
+        if self.between is None or not self.with_ours:
+            return
+        wanted = set(self.between.link_again())
+        chosen = packages_up_to(self.packages, self.options.packages)
+        # What uses a library is out of date when that has been linked.
+        names = [
+            package.name
+            for package in chosen
+            if not wanted.isdisjoint(
+                each.name for each in packages_up_to(self.packages, [package.name])
+            )
+        ]
+        if not names:
+            return
+        for part in parts_of(self.packages, names, self.bases, self.ros2):
+            self._run_part(part, alone, on_output, exactly=True)
+        run_under(self.bases, self.packages, self.ros2)
+
     def _run_part(
-        self, part: Part, alone: LeftAlone, on_output: Callable[[str], None] | None
+        self,
+        part: Part,
+        alone: LeftAlone,
+        on_output: Callable[[str], None] | None,
+        *,
+        exactly: bool = False,
     ) -> None:
         while True:
-            command = self._command(part, alone)
+            command = self._command(part, alone, exactly=exactly)
             try:
                 run_colcon(command, self.workspace, self.bases, on_output, part.environment)
             except BuildError as error:
+                # Some code can only be linked after it was optimised.
+                if any("ld.lld: " in line for line in error.tail) and self._waits(error.package):
+                    continue
                 if not (self.options.fallback and self.with_ours and alone.can_try(error)):
                     alone.give_up(error)
                     raise self._explained(error) from None
@@ -201,6 +268,12 @@ class _Build:
                 alone.keep()
                 return
 
+    def _waits(self, package: str) -> bool:
+        """Let the units of a package be analysed by their links; false if they were."""
+        if self.between is None or not self.with_ours:
+            return False
+        return self.between.at_once(self.bases.build / package)
+
     def _explained(self, error: BuildError) -> BuildError:
         """The error, with what a package of ROS 2 lacks."""
         package = next((one for one in self.packages if one.name == error.package), None)
@@ -209,18 +282,20 @@ class _Build:
             error.message += f"; {said}" if said else ""
         return error
 
-    def _command(self, part: Part, alone: LeftAlone) -> list[str]:
+    def _command(self, part: Part, alone: LeftAlone, *, exactly: bool = False) -> list[str]:
         options = self.options
+        by_process = options.processes and self.between is not None
         # Said both ways: a build folder keeps what it was told last.
         for_cmake = (
             f"-DTPC_CONSTANTS={'ON' if options.constants else 'OFF'}",
             f"-DTPC_TESTS={'ON' if options.tests else 'OFF'}",
+            f"-DTPC_PROCESSES={'ON' if by_process else 'OFF'}",
             f"-DTPC_LEFT_ALONE={';'.join(map(str, alone.folders))}",
             *part.cmake_args,
             *options.cmake_args,
         )
         asked = replace(options, cmake_args=for_cmake, packages=part.names)
-        return colcon_command(self.bases, part.packages, self.toolchain, asked)
+        return colcon_command(self.bases, part.packages, self.toolchain, asked, exactly=exactly)
 
 
 def installed(workspace: Path) -> Path:
@@ -361,6 +436,7 @@ def _gather(
     for folder in folders:
         for stale in stale_files(folder, _compiled(folder)):
             stale.unlink()
+            manifest_of(stale).unlink(missing_ok=True)
     units = [load_link_unit(path) for folder in folders for path in _compiled(folder)]
     left_out = [*_left_out(folders, left_alone)]
     nodes = python_of_build(scripts, {*names_of(units), *names_of(left_out)}, on_scripts)

@@ -9,9 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
+from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError
 from pytpc.static.link_unit import LeftOut, LinkUnit
+from pytpc.static.static_info import manifest_of
 from pytpc.workspace.cmake_targets import LinkTarget, link_targets
 
 _RECORD = Path("tpc/targets.tsv")
@@ -29,6 +32,28 @@ class Recorded:
     artifact: Path
     static_info: Path
     left_out: str
+
+    @property
+    def plans(self) -> Path:
+        """The folder with what its processes found; there is none before CMake has run."""
+        return self.static_info.with_suffix(".plans")
+
+    @property
+    def waits(self) -> Path:
+        """The file that is there until its processes are analysed."""
+        return self.plans / "later"
+
+    @property
+    def was_delayed(self) -> bool:
+        """Whether its last link made no analysis because its processes come first."""
+        manifest = manifest_of(self.static_info)
+        if not manifest.is_file():
+            return False
+        try:
+            found: Any = parse_json(manifest)
+            return bool(found.get("later"))
+        except (InputError, AttributeError):
+            return False
 
 
 def build_folders(base: Path) -> list[Path]:
@@ -154,6 +179,8 @@ def remark(unit: LinkUnit) -> str:
 def _why(unit: Recorded, target: LinkTarget) -> str:
     if unit.left_out:
         return unit.left_out
+    if unit.waits.is_file() or unit.was_delayed:
+        return "it was built, but its processes are not analysed yet; run `pytpc build` again"
     objects = sorted(target.objects.rglob("*.o")) if target.objects is not None else []
     beginnings = [_beginning(path) for path in objects]
     if objects and not any(data.startswith(_BITCODE) for data in beginnings):

@@ -82,7 +82,8 @@ class PathStep:
     """One line on the way from a parameter's read to what exposes it.
 
     ``step`` is the most telling thing that happens there, ``what`` says all of it. A place is
-    empty and 0 where steps were left out or no debug information names it.
+    empty and 0 where steps were left out or no debug information names it. ``unit`` is the link
+    unit (``package/name``) of the line; None if its own unit was analysed alone.
     """
 
     step: str
@@ -92,6 +93,11 @@ class PathStep:
     function: str
     what: str
     source_code: str | None
+    unit: str | None = None
+
+    def to_json(self) -> dict[str, Any]:
+        """The step as JSON (docs/reference/formats.md#path)."""
+        return _object(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +155,8 @@ class Comparison:
     """One threshold predicate comparison (docs/reference/formats.md#a-comparison).
 
     ``loop_depth`` is known for C++ only, and not from older files; the three before it are known
-    for Python only.
+    for Python only. ``processes`` are those in whose analysis it was found; None if that was the
+    analysis of its link unit alone.
     """
 
     key: str
@@ -176,6 +183,7 @@ class Comparison:
     end_column: int | None = None
     operand: str | None = None
     loop_depth: int | None = None
+    processes: tuple[str, ...] | None = None
 
     def to_json(self) -> dict[str, Any]:
         """The comparison as JSON (docs/reference/formats.md#a-comparison)."""
@@ -223,7 +231,8 @@ class LinkUnit:
     and the lists are empty; such a unit runs as its author wrote it and reports nothing. If the
     analysis ended early, ``incomplete`` says why, and the lists have what it found. ``script``
     is the script of a Python unit, relative to ``source_root``; None for all others.
-    ``build_folder`` is CMake's, absolute; None if the unit was not read from there.
+    ``build_folder`` is CMake's, absolute; None if the unit was not read from there. ``processes``
+    are those that it was analysed in; None if it was analysed alone.
     """
 
     link_unit: str
@@ -241,6 +250,7 @@ class LinkUnit:
     script: str | None = None
     build_folder: str | None = None
     incomplete: str | None = None
+    processes: tuple[str, ...] | None = None
 
     @property
     def trouble(self) -> str | None:
@@ -298,6 +308,8 @@ class LinkUnit:
         unit["comparisons"] = tuple(_comparison(found) for found in unit["comparisons"])
         unit["not_exposed"] = tuple(NotExposed(**found) for found in unit.get("not_exposed", ()))
         unit["blind_spots"] = tuple(BlindSpot(**spot) for spot in unit.get("blind_spots", ()))
+        if "processes" in unit:
+            unit["processes"] = tuple(unit["processes"])
         return cls(**unit)
 
 
@@ -314,13 +326,15 @@ def _comparison(data: dict[str, Any]) -> Comparison:
         found["read_at"] = Place(**found["read_at"])
     found["exposed_at"] = Place(**found["exposed_at"])
     found["path"] = tuple(PathStep(**step) for step in found.get("path", ()))
+    if "processes" in found:
+        found["processes"] = tuple(found["processes"])
     return Comparison(**found)
 
 
 # Fields that only one half of TPC writes, or only one kind of transform has.
 _OPTIONAL = frozenset(
     {"analysis", "end_lineno", "end_column", "key", "operand", "script", "build_folder"}
-    | {"incomplete", "loop_depth", "scale", "offset", "tree"}
+    | {"incomplete", "loop_depth", "processes", "scale", "offset", "tree", "unit"}
 )
 
 

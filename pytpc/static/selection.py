@@ -9,6 +9,7 @@ from fnmatch import fnmatchcase
 from pytpc.base.closest import did_you_mean
 from pytpc.base.errors import InputError
 from pytpc.base.wording import plain
+from pytpc.static.across import check_processes, is_in_process
 from pytpc.static.explanations import same_file
 from pytpc.static.places import Tpc
 from pytpc.static.static_info import StaticInfo
@@ -30,7 +31,8 @@ class Selection:
     """A selection; an empty field selects everything.
 
     ``packages`` own the source file, or a program that contains it. ``parameters`` and ``files``
-    may have wildcards; a name's namespace and a path's first folders may be left out.
+    may have wildcards; a name's namespace and a path's first folders may be left out. ``processes``
+    are those in whose analysis a comparison was found.
     """
 
     packages: tuple[str, ...] = ()
@@ -38,6 +40,7 @@ class Selection:
     types: tuple[str, ...] = ()
     files: tuple[str, ...] = ()
     constants: bool = False
+    processes: tuple[str, ...] = ()
     order: str = "place"
 
 
@@ -45,11 +48,14 @@ def select(static: StaticInfo, wanted: Selection) -> list[Tpc]:
     """The selected TPCs, sorted.
 
     Raises:
-        InputError: no package, or no parameter that is compared, has one of the names.
+        InputError: no package, no process, or no parameter that is compared has one of the names.
     """
     _check_packages(static, wanted.packages)
     _check_parameters(static, wanted.parameters)
+    check_processes(static, wanted.processes)
     found = [tpc for tpc in static.tpcs if _is_wanted(tpc, wanted)]
+    if wanted.processes:
+        found = [tpc for tpc in found if is_in_process(static, tpc, wanted.processes)]
     return sorted(found, key=ORDERS[wanted.order])
 
 

@@ -243,6 +243,10 @@ def _build_folder(folder: Path) -> Path:
     return next(above, folder)
 
 
+# What a link needs, beside the findings of its unit (passes/plan/Manifest.h).
+_MANIFEST_END = ".link.json"
+
+
 def unit_files(build_base: Path) -> list[Path]:
     """The files ``<build folder>/tpc/<link unit>.json`` below ``build_base``, sorted.
 
@@ -259,8 +263,17 @@ def unit_files(build_base: Path) -> list[Path]:
         below[:] = sorted(name for name in below if name != "CMakeFiles")
         here = Path(folder)
         if here.name == "tpc" and here != build_base and "CMakeCache.txt" not in files:
-            found += [here / name for name in files if name.endswith(".json")]
+            found += [
+                here / name
+                for name in files
+                if name.endswith(".json") and not name.endswith(_MANIFEST_END)
+            ]
     return sorted(found)
+
+
+def manifest_of(unit_file: Path) -> Path:
+    """What the linker wrote of the link, beside the file of its unit."""
+    return unit_file.with_name(f"{unit_file.stem}{_MANIFEST_END}")
 
 
 # A quarter of a million comparisons.

@@ -103,6 +103,9 @@ class BuildOptions:
         retry: build packages with TPC again that earlier builds left alone.
         python: analyse Python nodes; if false, those of an earlier build are forgotten.
         python_rules: the user's own rules for Python.
+        processes: analyse processes as a whole, across libraries and plugins; if false, each link
+            unit alone.
+        process_seconds: processor time for each of them; beyond it, its units are analysed alone.
         bases: the folders of the build; None: ``.tpc`` in the workspace.
     """
 
@@ -117,6 +120,8 @@ class BuildOptions:
     retry: bool = False
     python: bool = True
     python_rules: Path | None = None
+    processes: bool = True
+    process_seconds: int = 600
     bases: Bases | None = None
 
 
@@ -151,6 +156,8 @@ def colcon_command(
     packages: Sequence[Package],
     toolchain: Path,
     options: BuildOptions = PLAIN_BUILD,
+    *,
+    exactly: bool = False,
 ) -> list[str]:
     """The command that builds packages with TPC.
 
@@ -160,6 +167,7 @@ def colcon_command(
         toolchain: tpc.cmake.
         options: its ``packages``, ``build_type``, ``rules``, ``cmake_args`` and ``colcon_args``; a
             ``--cmake-args`` in the latter adds to ours.
+        exactly: do not build what these packages need.
 
     Raises:
         WorkspaceError: ``colcon_args`` has an option that TPC sets itself.
@@ -201,7 +209,7 @@ def colcon_command(
         *_HANDLERS,
         "--paths",
         *(_unglobbed(str(package.path.absolute())) for package in packages),
-        *(["--packages-up-to", *names] if names else []),
+        *([f"--packages-{'select' if exactly else 'up-to'}", *names] if names else []),
     ]
 
 

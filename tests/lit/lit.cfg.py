@@ -48,6 +48,8 @@ config.substitutions += [
     ("%opt", f"{opt} {load} -tpc-exclude={inputs}/include"),
     # The compilers for builds that are not CMake: %tpc-clang and %tpc-clang++.
     ("%tpc-clang", os.path.join(config.tpc_bin, "tpc-clang")),
+    # Makes one module of the link units of a process.
+    ("%merge", os.path.join(config.tpc_bin, "tpc-merge")),
     ("%tpc-ar", os.path.join(config.tpc_bin, "tpc-ar")),
     ("%inputs", inputs),
     ("%python", config.tpc_python),

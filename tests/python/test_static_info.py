@@ -221,6 +221,15 @@ def test_an_analysis_that_ended_early_keeps_its_comparisons_and_is_told(tmp_path
     assert static.units[0].to_json()["incomplete"] == "it takes more than 1 s"
 
 
+def test_processes_of_a_unit_and_of_a_comparison_are_kept(tmp_path: Path) -> None:
+    processes = ["move_base", "amcl"]
+    data = unit(processes=processes, comparisons=[comparison(processes=processes[:1])])
+    loaded = load_link_unit(write(tmp_path / "u.json", data))
+    assert loaded.processes == ("move_base", "amcl")
+    assert loaded.comparisons[0].processes == ("move_base",)
+    assert loaded.to_json() == data
+
+
 def test_source_paths_are_absolute(tmp_path: Path) -> None:
     static = collect(two_packages(tmp_path))
     assert static.source_path(KEYS[0]) == Path("/ws/src/face/src/detector.cpp")
@@ -236,6 +245,7 @@ def test_collect_takes_only_the_files_of_link_units(tmp_path: Path) -> None:
     ours = write(tmp_path / "tpc/tpc/node.json", unit())
     write(tmp_path / "other/config.json", {})
     write(tmp_path / "other/tpc/node.json.tmp", {})
+    write(tmp_path / "other/tpc/node.link.json", {})
     assert unit_files(tmp_path) == [ours]
 
 

@@ -11,6 +11,7 @@ import pytest
 from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import SYSTEM_PATH, cmake_file, log_library, plugin
 from pytpc.build.reconcile import recorded_units
+from pytpc.static.static_info import unit_files
 
 try:
     for half in (cmake_file, plugin, log_library):
@@ -41,7 +42,12 @@ class Built:
 
     def analysed(self) -> list[str]:
         """The link units that the passes have seen."""
-        return sorted(path.stem for path in self.folder.glob("tpc/*.json"))
+        return sorted(path.stem for path in unit_files(self.folder))
+
+    def manifests(self) -> list[str]:
+        """The link units whose link can be repeated."""
+        end = ".link.json"
+        return sorted(path.name.removesuffix(end) for path in self.folder.glob(f"tpc/*{end}"))
 
     def runs(self, program: str) -> subprocess.CompletedProcess[str]:
         return run([self.folder / program])
@@ -404,8 +410,8 @@ def test_packages_below_a_toplevel_that_found_gcc_are_instrumented(tmp_path: Pat
     subfolders = "add_subdirectory(a)\nadd_subdirectory(b)\nadd_executable(top main.cpp)\n"
     result = build(tmp_path, top + subfolders, "-DCMAKE_BUILD_TYPE=Release")
     assert result.warnings() == []
-    found = sorted(str(path.relative_to(result.folder)) for path in result.folder.rglob("*.json"))
-    assert [path for path in found if "tpc/" in path] == ["a/tpc/a_node.json", "b/tpc/b_node.json"]
+    found = [str(path.relative_to(result.folder)) for path in unit_files(result.folder)]
+    assert found == ["a/tpc/a_node.json", "b/tpc/b_node.json"]
     assert {unit.package for unit in recorded_units(result.folder) or ()} == {"a", "b"}
 
 
@@ -418,7 +424,7 @@ def test_a_target_can_be_left_out_and_a_test_is(tmp_path: Path) -> None:
         "set_property(TARGET u PROPERTY TPC_INSTRUMENT ON)\nadd_executable(x main.cpp)\n"
     )
     result = build(tmp_path, lists, toolchain(), "-DCMAKE_BUILD_TYPE=Release")
-    assert result.analysed() == ["u", "x"]
+    assert result.analysed() == result.manifests() == ["u", "x"]
     reasons = {unit.name: unit.left_out for unit in recorded_units(result.folder) or ()}
     assert reasons == {
         "quiet": "its property TPC_INSTRUMENT is OFF",
