@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pytpc.base.errors import InputError
 from pytpc.base.wording import many
-from pytpc.build.build import BuildResult
-from pytpc.build.build import build_workspace as build
+from pytpc.build.build import BuildResult, build_workspace
 from pytpc.build.collect import Collected, collect_sources
 from pytpc.build.python_units import (
     PythonUnits,
@@ -18,20 +18,23 @@ from pytpc.build.python_units import (
     named_beside,
     scripts_at,
 )
+from pytpc.processes.analysis import Analysed, Budget, with_outcomes
 from pytpc.processes.corrections import FILE, Corrections, read_corrections, write_corrections
-from pytpc.processes.process import Processes
+from pytpc.processes.process import NONE, Processes
 from pytpc.processes.processes import find_processes
+from pytpc.processes.whole import EachUnitAlone, WholeProcesses
 from pytpc.python_analysis.budget import SECONDS
 from pytpc.python_analysis.rules_file import Rules
 from pytpc.static.sources import with_source_digests
 from pytpc.static.static_info import StaticInfo
-from pytpc.workspace.colcon import Bases, BuildOptions
+from pytpc.workspace.colcon import PLAIN_BUILD, Bases, BuildOptions
 
 __all__ = [
     "BuildOptions",
     "BuildResult",
     "Collected",
     "Processes",
+    "WholeBuild",
     "analyse",
     "build",
     "collect",
@@ -40,6 +43,52 @@ __all__ = [
 ]
 
 Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True, slots=True)
+class WholeBuild:
+    """A build, and what became of each process in which code of several units meets.
+
+    ``failure`` says why the processes are unknown; each unit was then analysed alone.
+    """
+
+    build: BuildResult
+    processes: Processes = NONE
+    analysed: tuple[Analysed, ...] = ()
+    failure: str | None = None
+
+
+def build(
+    workspace: Path,
+    options: BuildOptions = PLAIN_BUILD,
+    *,
+    on_output: Callable[[str], None] | None = None,
+    on_scripts: Progress | None = None,
+    on_process: Callable[[str, int, int], None] | None = None,
+) -> WholeBuild:
+    """Build a workspace, analyse its processes, and link again what they change.
+
+    Args:
+        workspace, options, on_output, on_scripts: as `build_workspace` has them.
+        on_process: called with (name of a process that begins, processes analysed, all of them).
+
+    Raises:
+        TpcError: as `build_workspace`; or the file with corrections is broken.
+    """
+    bases = options.bases if options.bases is not None else Bases.of(workspace.resolve())
+    if not options.processes:
+        between = EachUnitAlone(bases)
+        return WholeBuild(
+            build_workspace(
+                workspace, options, on_output=on_output, on_scripts=on_scripts, between=between
+            )
+        )
+    budget = Budget(options.process_seconds)
+    whole = WholeProcesses(workspace, bases, _corrections(workspace), budget, on_process)
+    result = build_workspace(
+        workspace, options, on_output=on_output, on_scripts=on_scripts, between=whole
+    )
+    return WholeBuild(result, whole.found, tuple(whole.analysed), whole.failure)
 
 
 def analyse(
@@ -116,8 +165,15 @@ def processes(
         WorkspaceError: it is not built, or has no packages.
         InputError: a file of the build or of corrections is broken, or names what is not there.
     """
-    if corrections is None and (workspace / FILE).is_file():
-        corrections = workspace / FILE
-    known = Corrections() if corrections is None else read_corrections(corrections)
+    known = _corrections(workspace, corrections)
     bases = None if base is None else Bases(base.absolute())
-    return find_processes(workspace, bases, known, on_progress)
+    found = find_processes(workspace, bases, known, on_progress)
+    root = Bases.of(workspace).root if bases is None else bases.root
+    return replace(found, found=with_outcomes(found.found, root))
+
+
+def _corrections(workspace: Path, given: Path | None = None) -> Corrections:
+    """What the user says of programs; by default, in the file of the workspace, if it has one."""
+    if given is None and (workspace / FILE).is_file():
+        given = workspace / FILE
+    return Corrections() if given is None else read_corrections(given)

@@ -17,6 +17,7 @@ from pytpc.cli.arguments import JSON
 from pytpc.cli.console import console, print_json, warn_of_failed
 from pytpc.cli.long_table import print_table
 from pytpc.cli.sources import SOURCES, SOURCES_AND_QUESTION, static_of
+from pytpc.static.across import across, changes
 from pytpc.static.coverage import STATES, Covered, State, coverage, totals
 from pytpc.static.explanations import (
     Explanation,
@@ -50,6 +51,8 @@ def explain_command(
     sources: tuple[Path, ...], question: str, show_all: bool, as_json: bool
 ) -> None:
     """Show the path from where a parameter is read, through the comparison, to what is exposed.
+
+    Where the path enters another library of the process, the library is named.
 
     SOURCE is a static.json, a build base or a workspace; without it, this folder is used. Without
     --all, the path is shown for the comparison nearest to an exposing statement; the others get one
@@ -171,15 +174,29 @@ def _heading(found: FoundComparison) -> Text:
 def _print_way(console: Console, found: FoundComparison) -> None:
     console.print(_heading(found))
     path = found.comparison.path
+    for line in _found_in(found):
+        console.print(Padding(Text(plain(line)), (0, 0, 0, 2), expand=False), highlight=False)
     if not path:
         console.print(
             Padding(Text("this static information contains no paths"), (0, 0, 1, 2), expand=False)
         )
         return
     table = _plain_table(3)
-    for step in path:
+    for step, entered in zip(path, changes(path), strict=True):
+        if entered is not None:
+            table.add_row(Text("in"), Text(plain(entered), style="bold"), Text(""))
         table.add_row(*_cells(step))
     console.print(Padding(table, (0, 0, 1, 2), expand=False), highlight=False)
+
+
+def _found_in(found: FoundComparison) -> list[str]:
+    """Which link unit does what, and the processes."""
+    lines = [across(found.comparison.path)]
+    processes = found.comparison.processes or ()
+    if processes:
+        some = "process" if len(processes) == 1 else f"{len(processes)} processes:"
+        lines.append(f"found in {some} {', '.join(processes)}")
+    return [line for line in lines if line]
 
 
 def _cells(step: PathStep) -> tuple[Text, Text, Text]:
@@ -213,7 +230,14 @@ def _json(explanation: Explanation) -> dict[str, object]:
     return {
         "question": explanation.question,
         "comparisons": [
-            with_unit(each.unit, asdict(each.comparison)) for each in explanation.comparisons
+            with_unit(
+                each.unit,
+                {
+                    **asdict(each.comparison),
+                    "path": [step.to_json() for step in each.comparison.path],
+                },
+            )
+            for each in explanation.comparisons
         ],
         "reads": [with_unit(unit, asdict(read)) for unit, read in explanation.reads],
         "not_exposed": [with_unit(unit, asdict(found)) for unit, found in explanation.not_exposed],

@@ -14,6 +14,7 @@ from pytpc.cli.console import console, found_text, print_json, warn_of_failed
 from pytpc.cli.long_table import print_table
 from pytpc.cli.selecting import SELECTING, place_of
 from pytpc.cli.sources import SOURCES, static_of
+from pytpc.static.across import processes_of, units_of
 from pytpc.static.places import Tpc
 from pytpc.static.selection import ORDERS, Selection, select
 from pytpc.static.static_info import StaticInfo
@@ -71,19 +72,34 @@ def _listed(static: StaticInfo, tpc: Tpc) -> dict[str, object]:
         **static.comparisons[tpc.key].to_json(),
         "absolute_file": tpc.file,
         "keys": tpc.to_json()["keys"],
+        "processes": processes_of(static, tpc),
+        "units": units_of(static.comparisons[tpc.key].path),
     }
 
 
 def _print_table(static: StaticInfo, tpcs: Sequence[Tpc]) -> None:
     several = any(len(tpc.keys) > 1 for tpc in tpcs)
-    units = ("Units",) if several else ()
+    of_process = [processes_of(static, tpc) for tpc in tpcs]
+    across = [units_of(static.comparisons[tpc.key].path) for tpc in tpcs]
+    in_processes, over_units = any(of_process), any(len(units) > 1 for units in across)
     rows = []
-    for tpc in tpcs:
+    for tpc, processes, units in zip(tpcs, of_process, across, strict=True):
         found = static.comparisons[tpc.key]
         line = found.source_code or f"{found.relation} {found.name or found.source}"
         cells = [tpc.parameter or "", tpc.type, place_of(tpc), str(tpc.distance)]
         if several:
             cells.append(str(len(tpc.link_units)) if len(tpc.keys) > 1 else "")
+        if in_processes:
+            cells.append(_first(processes))
+        if over_units:
+            cells.append(f"{len(units)} units" if len(units) > 1 else "")
         rows.append([*cells, found.topic or "?", line])
-    headings = ("Parameter", "Type", "Place", "Distance", *units, "Exposed as", "Source line")
+    some = {"Units": several, "Process": in_processes, "Across": over_units}
+    optional = [heading for heading, is_shown in some.items() if is_shown]
+    headings = ("Parameter", "Type", "Place", "Distance", *optional, "Exposed as", "Source line")
     print_table(console(), headings, rows, right=("Distance", "Units"))
+
+
+def _first(names: Sequence[str]) -> str:
+    others = f" and {len(names) - 1} more" if len(names) > 1 else ""
+    return f"{names[0]}{others}" if names else ""

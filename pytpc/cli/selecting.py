@@ -17,7 +17,7 @@ TYPES = ("parameter", "flag", "derived", "constant")
 def SELECTING(command: Callable[..., None]) -> Callable[..., None]:
     """Add the options that say which comparisons are meant; the command gets a ``Selection``."""
 
-    names = ("packages", "parameters", "types", "files", "constants")
+    names = ("packages", "parameters", "types", "files", "constants", "processes")
 
     @wraps(command)
     def with_selection(**given: object) -> None:
@@ -56,6 +56,13 @@ def SELECTING(command: Callable[..., None]) -> Callable[..., None]:
             help="Show only this source file, or files like this pattern.",
         ),
         click.option("--constants", is_flag=True, help="Show comparisons with constants, too."),
+        click.option(
+            "--process",
+            "processes",
+            multiple=True,
+            metavar="NAME",
+            help="Show only what was found in this process; may be repeated.",
+        ),
     )
     for option in reversed(options):
         with_selection = option(with_selection)

@@ -210,6 +210,10 @@ def _facts(each: Details) -> list[tuple[str, Text]]:
         ("Function", each.nearest.function),
         ("Distance", str(tpc.distance)),
     ]
+    if each.across:
+        facts.append(("Across", each.across))
+    if each.processes:
+        facts.append(("Found in", ", ".join(each.processes)))
     if each.loop_depth:
         facts.append(("Inner loops", str(each.loop_depth)))
     if each.nearest.other_thresholds:

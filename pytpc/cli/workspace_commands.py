@@ -11,7 +11,7 @@ from pathlib import Path
 import click
 from rich.text import Text
 
-from pytpc.api.building import BuildOptions, BuildResult, build
+from pytpc.api.building import BuildOptions, BuildResult, WholeBuild, build
 from pytpc.cli.arguments import CONSTANTS, NO_PYTHON, PATH, PYTHON_RULES, RULES, as_object
 from pytpc.cli.console import (
     Advance,
@@ -24,7 +24,7 @@ from pytpc.cli.console import (
 )
 from pytpc.cli.lines import progress_console, say
 from pytpc.workspace import patch
-from pytpc.workspace.colcon import Bases, BuildError
+from pytpc.workspace.colcon import PLAIN_BUILD, Bases, BuildError
 from pytpc.workspace.ros2 import how_to_source
 
 _JOB_LINE = re.compile(r"^(Starting >>>|Finished <<<|Failed +<<<|Aborted +<<<) (?P<name>\S+)")
@@ -57,6 +57,8 @@ class _BuildArguments:
     python_rules: Path | None
     constants: bool
     tests: bool
+    no_processes: bool
+    process_seconds: int
     no_fallback: bool
     retry: bool
     colcon_args: tuple[str, ...]
@@ -73,6 +75,8 @@ class _BuildArguments:
             retry=self.retry,
             python=not self.no_python,
             python_rules=self.python_rules,
+            processes=not self.no_processes,
+            process_seconds=self.process_seconds,
             bases=None if self.base is None else Bases(self.base.absolute()),
         )
 
@@ -99,6 +103,18 @@ class _BuildArguments:
 @CONSTANTS
 @click.option("--tests", is_flag=True, help="Instrument test programs, too.")
 @click.option(
+    "--no-processes",
+    is_flag=True,
+    help="Analyse each program and library alone, instead of processes with all that they load.",
+)
+@click.option(
+    "--process-seconds",
+    type=click.IntRange(min=1),
+    default=PLAIN_BUILD.process_seconds,
+    show_default=True,
+    help="Processor time for the analysis of one process. Beyond it, its units are analysed alone.",
+)
+@click.option(
     "--no-fallback",
     is_flag=True,
     help="Stop if a package does not build with TPC, instead of building it without.",
@@ -111,6 +127,9 @@ class _BuildArguments:
 def build_command(given: _BuildArguments) -> None:
     """Build WORKSPACE with analysis and instrumentation, without changing its files.
 
+    A parameter that is read in one library and compared in another is found: each process is
+    analysed with the libraries and plugins that it loads, see `pytpc processes`.
+
     Python nodes are analysed, too. They report when `pytpc record` starts them, or when they are
     started from a shell in which you evaluated the output of `pytpc env`.
     """
@@ -121,6 +140,7 @@ def build_command(given: _BuildArguments) -> None:
                 given.options(),
                 on_output=shown.show,
                 on_scripts=shown.show_scripts,
+                on_process=shown.show_process,
             )
     except BuildError as error:
         for line in error.tail:
@@ -161,6 +181,14 @@ class _Progress:
             self._scripts = self._stack.enter_context(progress("analysing Python scripts"))
         self._scripts(done, total)
 
+    def show_process(self, name: str, done: int, total: int) -> None:
+        """Show which process is analysed, between the two links."""
+        text = f"analysing {name}, {done} of {total} processes done"
+        if self._console.is_terminal:
+            self._status.update(Text(text, no_wrap=True))
+        else:
+            say(text)
+
     def show(self, line: str) -> None:
         """Take one line of colcon's output."""
         job = _JOB_LINE.match(line)
@@ -178,8 +206,10 @@ class _Progress:
         self._status.update(Text(text[: max(20, self._console.width - 4)], no_wrap=True))
 
 
-def _show_build(result: BuildResult, given: Path) -> None:
+def _show_build(whole: WholeBuild, given: Path) -> None:
+    result = whole.build
     show_units(result.static)
+    _tell_processes(whole)
     for package, why in result.left_alone.items():
         warn(f"package {package} was built without TPC, because it does not build with it: {why}")
     if result.left_alone:
@@ -194,6 +224,24 @@ def _show_build(result: BuildResult, given: Path) -> None:
         tell_next(f"pytpc run {workspace} LAUNCH, or PACKAGE and LAUNCH")
     else:
         tell_next(f"pytpc doctor {workspace}")
+
+
+def _tell_processes(whole: WholeBuild) -> None:
+    """Say what was left out of the processes."""
+    if whole.failure is not None:
+        warn(f"each link unit was analysed alone: {whole.failure}")
+    for text in whole.processes.faults:
+        warn(text)
+    for text in dict.fromkeys(text for one in whole.analysed for text in one.left_out):
+        warn(text)
+    for one in whole.analysed:
+        if one.failure is not None:
+            units = ", ".join(unit.name for unit in one.process.units)
+            warn(f"process {one.process.name}: {one.failure}; analysed alone: {units}")
+    done = [one for one in whole.analysed if one.plan is not None]
+    if done:
+        count = f"{len(done)} process{'' if len(done) == 1 else 'es'}"
+        say(f"{count} analysed as a whole; `pytpc processes` shows what belongs to them")
 
 
 def _tell_python(result: BuildResult) -> None:

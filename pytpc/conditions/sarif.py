@@ -184,6 +184,7 @@ def _result(each: Details, rule: int, places: _Places) -> dict[str, Any]:
             "topics": sorted({at.topic for at in each.exposed if at.topic}),
             "keys": [key.key for key in tpc.keys],
             "linkUnits": list(tpc.link_units),
+            "processes": list(each.processes),
         },
     }
     if nearest.path:
@@ -213,11 +214,16 @@ def _step(step: PathStep, unit: LinkUnit, places: _Places) -> dict[str, Any]:
             location["logicalLocations"] = [
                 {"fullyQualifiedName": step.function, "kind": "function"}
             ]
-    return {
+    found: dict[str, Any] = {
         "location": location,
         "kinds": [step.step],
         "importance": "essential" if step.step in _ESSENTIAL else "important",
     }
+    if step.unit is not None:
+        found["module"] = step.unit
+        module = {"fullyQualifiedName": step.unit, "kind": "module"}
+        location.setdefault("logicalLocations", []).append(module)
+    return found
 
 
 def _warning(text: str) -> dict[str, Any]:

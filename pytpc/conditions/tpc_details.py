@@ -9,6 +9,7 @@ from typing import TypeVar
 from pytpc.base.wording import exact, tidy
 from pytpc.conditions.cpp_conditions import Condition
 from pytpc.conditions.lookup import Answer
+from pytpc.static.across import across, processes_of, units_of
 from pytpc.static.link_unit import Comparison, Default, LinkUnit, Transform
 from pytpc.static.loops import loop_depth
 from pytpc.static.places import Tpc
@@ -32,7 +33,8 @@ class Details:
     ``nearest`` is the comparison with the smallest distance. ``defaults``, ``reads``
     (``FILE:LINE``) and ``exposed`` have several entries if the link units differ. ``condition`` is
     None where only the source line is known; ``note`` says why, or what else to mind.
-    ``loop_depth`` is the largest of the link units; None if none knows it.
+    ``loop_depth`` is the largest of the link units; None if none knows it. ``processes`` are those
+    in whose analysis it was found.
     """
 
     tpc: Tpc
@@ -44,6 +46,7 @@ class Details:
     condition: Condition | None
     note: str
     loop_depth: int | None = None
+    processes: tuple[str, ...] = ()
 
     @property
     def title(self) -> str:
@@ -62,6 +65,11 @@ class Details:
         """The defaults as the source has them."""
         python = self.unit.is_python
         return tuple(shown_default(each, python=python) for each in self.defaults)
+
+    @property
+    def across(self) -> str:
+        """Which link unit reads, compares and exposes; empty if the path stays in one."""
+        return across(self.nearest.path)
 
     @property
     def meaning(self) -> str:
@@ -86,7 +94,9 @@ class Details:
             "defaults": self.defaults,
             "reads": self.reads,
             "exposed": [asdict(each) for each in self.exposed],
-            "path": [asdict(step) for step in self.nearest.path],
+            "path": [step.to_json() for step in self.nearest.path],
+            "processes": self.processes,
+            "units": units_of(self.nearest.path),
         }
 
 
@@ -109,6 +119,7 @@ def details(static: StaticInfo, tpc: Tpc, answer: Answer) -> Details:
         condition=answer.condition,
         note=answer.note,
         loop_depth=loop_depth(static, tpc),
+        processes=processes_of(static, tpc),
     )
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any
 
 import yaml
 
-from pytpc.processes.process import Choice, Process, Processes, Unit
+from pytpc.base.wording import many
+from pytpc.processes.process import Choice, Outcome, Process, Processes, Unit
 
 _WHY = {
     "launch": "loaded by the launch file",
@@ -22,11 +24,22 @@ def words_of(process: Process) -> list[tuple[str, str]]:
     lines = [("units", ", ".join(map(_unit, process.units)))]
     lines += [("plugins", _choice(choice)) for choice in process.choices]
     files = dict.fromkeys(start.path.name for start in process.starts)
+    if process.outcome is not None:
+        lines.append(("found", _found(process.outcome)))
     return [*lines, *([("started", f"by {', '.join(files)}")] if files else [])]
 
 
 def _unit(unit: Unit) -> str:
-    return unit.name if unit.is_analysed else f"{unit.name} (not analysed)"
+    return unit.name if unit.is_known else f"{unit.name} (not analysed)"
+
+
+def _found(outcome: Outcome) -> str:
+    if outcome.failure is not None:
+        return f"nothing as a whole, so its units were analysed alone: {outcome.failure}"
+    return (
+        f"{many(outcome.comparisons, 'comparison')} in {many(outcome.functions, 'function')}"
+        f" that it can reach; {outcome.seconds:.1f} s of processor time, {outcome.memory_mib} MiB"
+    )
 
 
 def _choice(choice: Choice) -> str:
@@ -44,6 +57,7 @@ def processes_as_json(found: Processes) -> dict[str, Any]:
                 "program": process.program,
                 "host": None if process.host is None else str(process.host),
                 "functions": process.functions,
+                "analysis": None if process.outcome is None else asdict(process.outcome),
                 "units": [
                     {
                         "package": unit.package,

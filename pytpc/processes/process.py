@@ -6,23 +6,40 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from pytpc.build.reconcile import Recorded
 from pytpc.processes.plugins import Plugin
 from pytpc.processes.starts import Start
+from pytpc.static.static_info import manifest_of
 
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """A link unit of the workspace; ``functions`` is None where it was not analysed."""
+    """A link unit of the workspace.
+
+    ``functions`` is None where it was not analysed. ``recorded`` says where its static information
+    is, and what was found for it.
+    """
 
     package: str
     name: str
     path: Path
+    recorded: Recorded
     functions: int | None = None
 
     @property
-    def is_analysed(self) -> bool:
-        """Whether its code is known: it was compiled to bitcode and analysed."""
-        return self.functions is not None
+    def full_name(self) -> str:
+        """Its package and name."""
+        return f"{self.package}/{self.name}"
+
+    @property
+    def manifest(self) -> Path:
+        """What it was linked from, where that is known: beside its static information."""
+        return manifest_of(self.recorded.static_info)
+
+    @property
+    def is_known(self) -> bool:
+        """Whether its code can be read: it was compiled to bitcode."""
+        return self.functions is not None or self.manifest.is_file()
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,12 +47,29 @@ class Choice:
     """Which plugins of a base class a process loads, and how that is known.
 
     ``why`` is ``launch``, ``parameters``, ``code`` (a default or a text in the program), ``all``
-    (nothing names one, so it may be any) or ``corrected``.
+    (nothing names one, so it may be any) or ``corrected``. ``others`` are those that it does not
+    load.
     """
 
     base: str
     plugins: tuple[Plugin, ...]
     why: str
+    others: tuple[Plugin, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What became of the analysis of a process, in the last build that had to do it.
+
+    ``functions`` are those that it can reach. ``seconds`` are of processor time. ``failure`` says
+    why its units were analysed alone, or is None.
+    """
+
+    functions: int
+    comparisons: int
+    seconds: float
+    memory_mib: int
+    failure: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +78,7 @@ class Process:
 
     ``program`` is its package and name; ``host`` the file, which may be one of the system that
     loads plugins of the workspace, and is None if it is not installed here. ``starts`` are the
-    nodes of launch files that run so.
+    nodes of launch files that run so. ``outcome`` is None where it was not analysed as a whole.
     """
 
     name: str
@@ -53,6 +87,7 @@ class Process:
     units: tuple[Unit, ...]
     choices: tuple[Choice, ...] = ()
     starts: tuple[Start, ...] = ()
+    outcome: Outcome | None = None
 
     @property
     def functions(self) -> int:
@@ -67,7 +102,7 @@ class Process:
     @property
     def is_joined(self) -> bool:
         """Whether code of several units meets in it."""
-        return sum(unit.is_analysed for unit in self.units) > 1
+        return sum(unit.is_known for unit in self.units) > 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,3 +112,7 @@ class Processes:
     found: tuple[Process, ...]
     faults: tuple[str, ...] = ()
     unread: Mapping[Path, str] = field(default_factory=dict)
+
+
+NONE = Processes(())
+"""No processes at all."""

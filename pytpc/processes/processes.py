@@ -37,6 +37,9 @@ from pytpc.workspace.packages import find_packages
 
 _PATHS = ("CMAKE_PREFIX_PATH", "AMENT_PREFIX_PATH")
 Progress = Callable[[int, int], None]
+Read = tuple[str, str]
+"""A parameter and its default, a text."""
+Reads = Mapping[tuple[str, str], Sequence[Read]]
 
 
 def find_processes(
@@ -63,56 +66,100 @@ def find_processes(
         raise WorkspaceError(no_folder(workspace), workspace)
     if not bases.static_info.is_file():
         raise WorkspaceError("not built with TPC yet; build it with: pytpc build", workspace)
-    packages = find_packages(workspace)
-    static = StaticInfo.load(bases.static_info)
-    env = with_devel_space(workspace_env(bases.install), bases.devel)
-    built = _built(bases, static)
-    prefixes = _prefixes(env)
-    libraries = Libraries(folders=system_folders(env, prefixes))
-    libraries.ours, doubled = _by_name(built, libraries)
-    declared = declared_plugins(packages, prefixes, libraries.ours)
-    wanted = frozenset(name for plugin in declared.plugins for name in plugin.names)
-    starts: tuple[Start, ...] = ()
-    unread: Mapping[Path, str] = {}
-    if wanted:
-        read = read_starts(env, packages, wanted, on_progress)
-        starts, unread = read.found, read.unread
-    finder = _Finder(
-        libraries,
-        built,
-        {(one.package, one.link_unit): one for one in static.units},
-        declared.plugins,
-        starts,
-        prefixes,
-    )
-    found = finder.all(corrections or Corrections())
-    cycle = cyclic_needs(one for path in built if (one := libraries.binary(path)))
-    faults = [*doubled, *declared.faults]
-    if cycle:
-        faults.append(f"libraries need one another in a circle: {' -> '.join(cycle)}")
-    return Processes(tuple(found), tuple(faults), unread)
+    units = StaticInfo.load(bases.static_info).units
+    search = Search.begin(workspace, bases, units, on_progress)
+    reads = {(one.package, one.link_unit): defaults_of(one) for one in units}
+    return search.found(reads, corrections or Corrections())
 
 
-def _built(bases: Bases, static: StaticInfo) -> dict[Path, Unit]:
+def defaults_of(unit: LinkUnit) -> list[Read]:
+    """The parameters that a unit reads with a text as default."""
+    return [(read.name, read.default) for read in unit.parameters if isinstance(read.default, str)]
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """What is known of a built workspace, however often its processes are asked for."""
+
+    libraries: Libraries
+    built: Mapping[Path, Unit]
+    plugins: Sequence[Plugin]
+    starts: Sequence[Start]
+    prefixes: Sequence[Path]
+    faults: Sequence[str]
+    unread: Mapping[Path, str]
+
+    @classmethod
+    def begin(
+        cls,
+        workspace: Path,
+        bases: Bases,
+        units: Iterable[LinkUnit],
+        on_progress: Progress | None = None,
+    ) -> Search:
+        """Read the files of a build: programs and libraries, and what declares and starts them.
+
+        Args:
+            workspace, bases, on_progress: as `find_processes` has them.
+            units: what is known of the link units, by this build or an earlier one.
+
+        Raises:
+            WorkspaceError, InputError: as `find_processes`.
+        """
+        packages = find_packages(workspace)
+        env = with_devel_space(workspace_env(bases.install), bases.devel)
+        built = _built(bases, units)
+        prefixes = _prefixes(env)
+        libraries = Libraries(folders=system_folders(env, prefixes))
+        libraries.ours, doubled = _by_name(built, libraries)
+        declared = declared_plugins(packages, prefixes, libraries.ours)
+        wanted = frozenset(name for plugin in declared.plugins for name in plugin.names)
+        starts: tuple[Start, ...] = ()
+        unread: Mapping[Path, str] = {}
+        if wanted:
+            read = read_starts(env, packages, wanted, on_progress)
+            starts, unread = read.found, read.unread
+        faults = [*doubled, *declared.faults]
+        cycle = cyclic_needs(one for path in built if (one := libraries.binary(path)))
+        if cycle:
+            faults.append(f"libraries need one another in a circle: {' -> '.join(cycle)}")
+        return cls(libraries, built, declared.plugins, starts, prefixes, faults, unread)
+
+    def found(self, reads: Reads, corrections: Corrections) -> Processes:
+        """The processes.
+
+        Args:
+            reads: of units (package and name), the parameters with a text as default.
+            corrections: what the user says of some programs.
+
+        Raises:
+            InputError: a correction names what is not there.
+        """
+        finder = _Finder(
+            self.libraries, self.built, reads, self.plugins, self.starts, self.prefixes
+        )
+        return Processes(tuple(finder.all(corrections)), tuple(self.faults), self.unread)
+
+
+def _built(bases: Bases, units: Iterable[LinkUnit]) -> dict[Path, Unit]:
     """The files of the workspace's link units, without tests."""
     counts = {
         (one.package, one.link_unit): one.counts.functions
-        for one in static.units
+        for one in units
         if one.status == "ok" and not one.is_python
     }
     found = {}
-    for recorded in _recorded(bases):
+    for recorded in recorded_of(bases):
         key = recorded.package, recorded.name
-        is_wanted = recorded.static_info.is_file() or not recorded.left_out.startswith(
-            "it is a test"
-        )
+        unit = Unit(*key, recorded.artifact.absolute(), recorded, counts.get(key))
+        is_wanted = unit.is_known or not recorded.left_out.startswith("it is a test")
         if recorded.artifact.is_file() and is_wanted:
-            path = recorded.artifact.absolute()
-            found[path] = Unit(*key, path, counts.get(key))
+            found[unit.path] = unit
     return found
 
 
-def _recorded(bases: Bases) -> Iterator[Recorded]:
+def recorded_of(bases: Bases) -> Iterator[Recorded]:
+    """The link units of all packages."""
     for folder in build_folders(bases.build):
         yield from recorded_units(folder) or ()
 
@@ -145,7 +192,7 @@ class _Finder:
 
     libraries: Libraries
     built: Mapping[Path, Unit]
-    units: Mapping[tuple[str, str], LinkUnit]
+    reads: Reads
     plugins: Sequence[Plugin]
     starts: Sequence[Start]
     prefixes: Sequence[Path]
@@ -172,7 +219,16 @@ class _Finder:
             else:
                 found += self._of(program, host)
         corrections.refuse_unknown(hosts)
-        return sorted(found, key=lambda process: process.name)
+        return sorted(map(self._with_others, found), key=lambda process: process.name)
+
+    def _with_others(self, process: Process) -> Process:
+        """The process, with the plugins that it could load and does not."""
+        choices = []
+        for choice in process.choices:
+            others = [one for one in self.plugins if one.base == choice.base]
+            kept = tuple(one for one in others if one not in choice.plugins)
+            choices.append(replace(choice, others=kept))
+        return replace(process, choices=tuple(choices))
 
     def _of_system(self, program: str) -> Path | None:
         places = (prefix / "lib" / program for prefix in self.prefixes)
@@ -309,11 +365,10 @@ class _Finder:
         by_name = {name: plugin for plugin in candidates for name in plugin.names}
         units = [self.built[one.path] for one in binaries if one.path in self.built]
         return [
-            (by_name[read.default], read.name)
+            (by_name[default], name)
             for unit in units
-            if (known := self.units.get((unit.package, unit.name))) is not None
-            for read in known.parameters
-            if isinstance(read.default, str) and read.default in by_name
+            for name, default in self.reads.get((unit.package, unit.name), ())
+            if default in by_name
         ]
 
     def _corrected(

@@ -10,6 +10,7 @@ import shutil
 import signal
 import sys
 import time
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -50,6 +51,12 @@ def values(command: list[str], option: str) -> list[str]:
     while end < len(command) and not command[end].startswith("--"):
         end += 1
     return command[start:end]
+
+
+def test_packages_alone_without_what_they_need() -> None:
+    options = BuildOptions(packages=["arm"])
+    command = colcon_command(BASES, PACKAGES, TOOLCHAIN, options, exactly=True)
+    assert command[-2:] == ["--packages-select", "arm"]
 
 
 def test_the_whole_command() -> None:
@@ -186,11 +193,19 @@ class FakeColcon:
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.lines: list[str] = []
+        self.asked: list[tuple[tuple[str, ...], bool]] = []
         monkeypatch.setattr(build, "colcon_command", self._command)
 
     def _command(
-        self, bases: Bases, packages: object, toolchain: object, options: BuildOptions
+        self,
+        bases: Bases,
+        packages: object,
+        toolchain: object,
+        options: BuildOptions,
+        *,
+        exactly: bool,
     ) -> list[str]:
+        self.asked.append((tuple(options.packages), exactly))
         head = [
             "import os, sys, time",
             "from pathlib import Path",
@@ -258,6 +273,47 @@ def test_a_build_gives_units_and_what_was_missed(workspace: Path, colcon: FakeCo
     assert [found["link_unit"] for found in saved["units"]] == ["broken", "detector"]
     assert (workspace / ".tpc/.gitignore").read_text(encoding="utf-8") == "*\n"
     assert (workspace / ".tpc/build/arm/.cmake/api/v1/query/codemodel-v2").is_file()
+
+
+class Changed:
+    """Says that the units of ``arm`` have to be linked again."""
+
+    def __init__(self, *, waits: bool = False) -> None:
+        self.folders: list[str] = []
+        self.waits = waits
+
+    def at_once(self, folder: Path) -> bool:
+        assert folder.name == "face"
+        waited, self.waits = self.waits, False
+        return waited
+
+    def begin(self, folders: Sequence[Path]) -> None:
+        self.folders = [folder.name for folder in folders]
+
+    def link_again(self) -> Collection[str]:
+        return ["arm"]
+
+
+def test_what_uses_a_unit_that_changed_is_linked_again(workspace: Path, colcon: FakeColcon) -> None:
+    """hand needs arm; face does not, and tail does and is not asked for."""
+    for name in ("hand", "tail"):
+        add_package(
+            workspace / "src" / name,
+            more="<depend>arm</depend>",
+            cmakelists=f"project({name})".encode(),
+        )
+    between = Changed()
+    build_workspace(workspace, between=between)
+    assert sorted(between.folders) == ["arm", "face", "hand", "tail"]
+    assert colcon.asked == [((), False), (("arm", "hand", "tail"), True)]
+    colcon.asked.clear()
+    build_workspace(workspace, BuildOptions(packages=["hand", "face"]), between=between)
+    assert sorted(between.folders) == ["arm", "face", "hand"]
+    assert colcon.asked == [(("hand", "face"), False), (("arm", "hand"), True)]
+    colcon.asked.clear()
+    own = BuildOptions(cmake_args=["-DCMAKE_TOOLCHAIN_FILE=own.cmake"])
+    build_workspace(workspace, own, between=between)
+    assert colcon.asked == [((), False)]
 
 
 FIXED_PY = """import rospy
@@ -522,6 +578,29 @@ def fails_with_tpc(colcon: FakeColcon, *, without: str = "0") -> None:
     ]
     colcon.link_log("name")
     colcon.lines.append("sys.exit(status != '0')")
+
+
+def test_code_that_must_be_optimised_to_link_waits_for_no_process(
+    workspace: Path, colcon: FakeColcon
+) -> None:
+    """The first link, which does not optimise, fails; so it is tried with the analysis."""
+    tries = workspace / "tries"
+    colcon.lines += [
+        f"tries = Path({str(tries)!r})",
+        "status = 0 if tries.exists() else 2",
+        "tries.touch()",
+        "(base / f'log/build_{status}/face').mkdir(parents=True, exist_ok=True)",
+        "ended = f\"[1.0] (face) JobEnded: {{'identifier': 'face', 'rc': {status}}}\\n\"",
+        "(base / f'log/build_{status}/events.log').write_text(ended)",
+        "said = 'ld.lld: error: undefined symbol: once' if status else ''",
+        "(base / f'log/build_{status}/face/stderr.log').write_text(said)",
+    ]
+    colcon.link_log("f'build_{status}'")
+    colcon.lines.append("sys.exit(status)")
+    between = Changed(waits=True)
+    between.link_again = lambda: []  # type: ignore[method-assign]
+    assert build_workspace(workspace, between=between).left_alone == {}
+    assert colcon.asked == [((), False), ((), False)]
 
 
 def test_a_package_that_builds_only_without_tpc_is_left_alone(

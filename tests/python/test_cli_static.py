@@ -96,6 +96,8 @@ def test_list_as_json_holds_every_field(build_base: Path) -> None:
             **comparison(key=KEYS[1], source_code=None, topic=None, source="min_height"),
             "absolute_file": "/ws/src/arm/src/detector.cpp",
             "keys": [{"key": KEYS[1], "package": "arm", "link_unit": "mover", "distance": 1}],
+            "processes": [],
+            "units": [],
         },
         {
             "package": "face",
@@ -103,6 +105,8 @@ def test_list_as_json_holds_every_field(build_base: Path) -> None:
             **comparison(source_code="if (x[red] > limit_)  // [/red]"),
             "absolute_file": "/ws/src/face/src/detector.cpp",
             "keys": [{"key": KEYS[0], "package": "face", "link_unit": "detector", "distance": 1}],
+            "processes": [],
+            "units": [],
         },
     ]
     assert listed == expected

@@ -13,10 +13,14 @@ from click.testing import CliRunner, Result
 from packages import add_package, install_prefix
 from static_units import failed_unit, unit
 
+from pytpc.api.building import WholeBuild
 from pytpc.base.errors import InputError
 from pytpc.build.build import BuildResult
+from pytpc.build.reconcile import Recorded
 from pytpc.cli import workspace_commands
 from pytpc.cli.main import main
+from pytpc.processes.analysis import Analysed
+from pytpc.processes.process import Process, Processes, Unit
 from pytpc.static.link_unit import LeftOut, LinkUnit
 from pytpc.static.static_info import StaticInfo
 from pytpc.workspace.colcon import Bases, BuildError, BuildOptions
@@ -52,7 +56,7 @@ def test_build_hands_over_its_options_and_shows_the_result(
 ) -> None:
     given: dict[str, Any] = {}
 
-    def fake(workspace: Path, options: BuildOptions, **callbacks: Any) -> BuildResult:
+    def fake(workspace: Path, options: BuildOptions, **callbacks: Any) -> WholeBuild:
         given.update(asdict(options), bases=options.bases, workspace=workspace)
         callbacks["on_output"]("Starting >>> face")
         callbacks["on_output"]("[ 50%] Building CXX object")
@@ -62,13 +66,22 @@ def test_build_hands_over_its_options_and_shows_the_result(
         )
         alone = {"leg": "a.cpp:1: error: no"}
         callbacks["on_scripts"](1, 2)
-        return BuildResult(options.bases, (), static, alone, 12.34)
+        callbacks["on_process"]("arm/drive", 0, 2)
+        result = BuildResult(options.bases, (), static, alone, 12.34)
+        process = Process("arm/drive", "arm/drive", None, (Unit("arm", "drive", Path(), recorded),))
+        analysed = (
+            Analysed(process, tmp_path / "plan.json", {}, ("libown.so: has no bitcode",)),
+            Analysed(process, None, {}, failure="it takes too long"),
+        )
+        return WholeBuild(result, Processes((), ("two plugins of one name",)), analysed)
 
+    recorded = Recorded("arm", "drive", tmp_path, tmp_path, "")
     monkeypatch.setattr(workspace_commands, "build", fake)
     result = run(
         *("build", tmp_path, "--package", "face", "--package", "arm", "--build-type", "Debug"),
         *("--constants", "--base", tmp_path / "own", "--tests", "--no-fallback", "--retry"),
         *("--no-python", "--python-rules", tmp_path / "rules.json"),
+        *("--no-processes", "--process-seconds", "7"),
         *("--", "--merge-install", "--cmake-args", "-DX=1"),
     )
     assert result.exit_code == 0, result.output
@@ -78,6 +91,7 @@ def test_build_hands_over_its_options_and_shows_the_result(
     assert given["bases"] == Bases(tmp_path / "own")
     assert (given["constants"], given["tests"], given["retry"]) == (True, True, True)
     assert (given["fallback"], given["python"]) == (False, False)
+    assert (given["processes"], given["process_seconds"]) == (False, 7)
     assert given["python_rules"] == tmp_path / "rules.json"
     assert given["colcon_args"] == ("--merge-install", "--cmake-args", "-DX=1")
     assert result.stdout.splitlines()[-1] == (
@@ -85,9 +99,14 @@ def test_build_hands_over_its_options_and_shows_the_result(
     )
     assert result.stderr.splitlines() == [
         "Starting >>> face",
+        "analysing arm/drive, 0 of 2 processes done",
         "pytpc: warning: face/broken was not analysed and reports nothing:"
         " the instrumented module does not verify",
         "face/thin reports nothing: it is a test",
+        "pytpc: warning: two plugins of one name",
+        "pytpc: warning: libown.so: has no bitcode",
+        "pytpc: warning: process arm/drive: it takes too long; analysed alone: drive",
+        "1 process analysed as a whole; `pytpc processes` shows what belongs to them",
         "pytpc: warning: package leg was built without TPC, because it does not build with it:"
         " a.cpp:1: error: no",
         "run `pytpc build --retry` to try TPC again",

@@ -126,10 +126,13 @@ def test_a_second_build_finds_the_same_and_removes_what_is_gone(built: Path) -> 
     text = (built / "src/tiny/CMakeLists.txt").read_text(encoding="utf-8")
     stale = built / ".tpc/build/tiny/tpc/renamed_node.json"
     shutil.copy(built / ".tpc/build/tiny/tpc/tiny_node.json", stale)
+    manifest = stale.with_name("renamed_node.link.json")
+    shutil.copy(stale.with_name("tiny_node.link.json"), manifest)
     result = build_workspace(built)
     assert (built / ".tpc/static.json").read_bytes() == first
     assert result.static.left_out == ()
     assert not stale.exists()
+    assert not manifest.exists()
     assert (built / "src/tiny/CMakeLists.txt").read_text(encoding="utf-8") == text
 
 

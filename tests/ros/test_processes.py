@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from pytpc.api.building import build, processes
+from pytpc.api.building import BuildOptions, build, processes
 from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import log_library, plugin, project_root
 
@@ -31,7 +31,8 @@ UNREAD = "requires the 'robot' arg to be set"
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     workspace = tmp_path_factory.mktemp("processes") / "ws"
     shutil.copytree(PLUGGED, workspace)
-    build(workspace)
+    # The list of processes needs no analysis of them.
+    build(workspace, BuildOptions(processes=False))
     return workspace
 
 

@@ -14,6 +14,7 @@ from pytpc.present.page.reported_mission import ReportedMission
 from pytpc.present.page.source import Line, StepView, source_lines, way_of
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark
+from pytpc.static.across import across
 from pytpc.static.link_unit import Comparison
 from pytpc.values.origins import Origin, origin_for
 
@@ -52,6 +53,8 @@ class CardView:
     age: str
     node: str
     unit: str
+    across: str
+    processes: str
     exposed: str
     others: int
     distance: int
@@ -117,6 +120,8 @@ def card_view(
         age=f"{(mark.time_ns - last.time_ns) / 1e9:.2f}",
         node=last.node,
         unit=f"{unit.package}/{unit.link_unit}",
+        across=across(found.path),
+        processes=", ".join(found.processes or ()),
         exposed=_exposed(found),
         others=len(suspect.keys) - 1,
         distance=found.distance,

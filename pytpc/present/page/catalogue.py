@@ -129,10 +129,14 @@ def _view(each: Details, ident: str) -> TpcView:
             ", ".join(f"{at.place} ({at.topic or 'unknown topic'})" for at in each.exposed),
         ),
         ("Function", each.nearest.function),
+        ("Across", each.across),
+        ("Found in", ", ".join(each.processes)),
     ]
     topics = [at.topic for at in each.exposed if at.topic]
     told = (each.title, tpc.type, tpc.package, tpc.place, each.source_text, each.nearest.function)
-    words = " ".join([*told, *topics, *tpc.link_units, *(key.key for key in tpc.keys)])
+    words = " ".join(
+        [*told, *topics, *tpc.link_units, *each.processes, *(key.key for key in tpc.keys)]
+    )
     macro = each.condition.macro if each.condition is not None else None
     return TpcView(
         ident=ident,

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pytpc.base.source_bytes import source_bytes
+from pytpc.static.across import changes
 from pytpc.static.explanations import where
 from pytpc.static.link_unit import Comparison
 from pytpc.static.static_info import StaticInfo
@@ -28,12 +29,16 @@ class Line:
 
 @dataclass(frozen=True)
 class StepView:
-    """A line of the source on the way from the parameter's read to what is exposed."""
+    """A line of the source on the way from the parameter's read to what is exposed.
+
+    ``entered`` is the link unit of the line where the way comes from another one, else empty.
+    """
 
     place: str
     what: str
     code: str
     here: bool
+    entered: str = ""
 
 
 def way_of(found: Comparison) -> list[StepView]:
@@ -44,8 +49,9 @@ def way_of(found: Comparison) -> list[StepView]:
             what=step.what,
             code=(step.source_code or "")[:LONGEST_LINE],
             here=(step.file, step.lineno) == (found.file, found.lineno),
+            entered=entered or "",
         )
-        for step in found.path
+        for step, entered in zip(found.path, changes(found.path), strict=True)
     ]
 
 

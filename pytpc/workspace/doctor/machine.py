@@ -55,6 +55,7 @@ _PARTS = (
     "share/tpc/flags",
     "share/tpc/rules/ros1.json",
     "bin/tpc-clang++",
+    "bin/tpc-merge",
 )
 # What the log library loads in a node of ROS 1.
 _ROS1_PART = "lib/libtpc_log_ros1.so"
