@@ -170,16 +170,28 @@ static cl::opt<unsigned> MaxSeparated(
     "tpc-max-separated", cl::Hidden, cl::init(3),
     cl::desc("Nesting of functions that are copied for each of their calls"));
 
-/// Runs the analysis so that a crash, an endless loop or exhausted memory only
-/// makes the analysis fail, not the link. \p M changes only if reports are
-/// planned.
+/// Looks for findings so that a crash, an endless loop or exhausted memory only
+/// makes that fail, not the link; \p Crashed is what the user is told then.
+static Findings findSafely(StringRef Crashed,
+                           function_ref<void(Findings &)> Find) {
+  auto Out = std::make_unique<Findings>();
+  if (!runGuarded([&] { Find(*Out); })) {
+    // Never destroy what a crash left half built.
+    bool IsChanged = Out.release()->IsChanged;
+    Out = std::make_unique<Findings>();
+    Out->Failure = Crashed.str();
+    Out->IsChanged = IsChanged;
+  }
+  return std::move(*Out);
+}
+
+/// Analyses \p M, which changes only if reports are planned.
 static Findings analyseSafely(Module &M, ModuleAnalysisManager &AM,
                               const Options &Opts) {
-  auto Out = std::make_unique<Findings>();
-  bool Survived = runGuarded([&] {
+  return findSafely("the analysis crashed", [&](Findings &Out) {
     const RuleTables &Rules = AM.getResult<RuleTableAnalysis>(M);
-    Out->Failure = Rules.Error;
-    if (!Out->Failure.empty())
+    Out.Failure = Rules.Error;
+    if (!Out.Failure.empty())
       return;
     Budget Limits(Opts.MaxSeconds, Opts.MaxMemory);
     AnalysedModule Analysed(M, Opts, Rules.Tables);
@@ -205,44 +217,28 @@ static Findings analyseSafely(Module &M, ModuleAnalysisManager &AM,
       if (Limits.why().empty() && Round < MaxSeparated &&
           Separate(std::move(Shared)))
         continue;
-      Out->Unit = describe(Seen, Own->AM, Opts);
-      Out->Incomplete = Limits.why();
+      Out.Unit = describe(Seen, Own->AM, Opts);
+      Out.Incomplete = Limits.why();
       fail(Opts.InjectLateFailure);
       PlannedFindings Of;
       if (Opts.Instrument || !Opts.PlanOut.empty())
-        planReports(Analysed, Own->AM, Opts, *Out, Of);
-      if (!Opts.PlanOut.empty() && Out->Failure.empty())
-        writePlan(M, Analysed, Own->AM, Opts, *Out, Of);
+        planReports(Analysed, Own->AM, Opts, Out, Of);
+      if (!Opts.PlanOut.empty() && Out.Failure.empty())
+        writePlan(M, Analysed, Own->AM, Opts, Out, Of);
       return;
     }
   });
-  if (!Survived) {
-    // Never destroy what a crash left half built.
-    bool IsChanged = Out.release()->IsChanged;
-    Out = std::make_unique<Findings>();
-    Out->Failure = "the analysis crashed";
-    Out->IsChanged = IsChanged;
-  }
-  return std::move(*Out);
 }
 
-/// Takes the findings from plans. A crash only makes the link unit get none.
+/// Takes the findings from plans.
 static Findings applySafely(Module &M, ModuleAnalysisManager &AM,
                             const Options &Opts) {
-  auto Out = std::make_unique<Findings>();
-  bool Survived = runGuarded([&] {
+  return findSafely("the plans crashed TPC", [&](Findings &Out) {
     const RuleTables &Rules = AM.getResult<RuleTableAnalysis>(M);
-    Out->Failure = Rules.Error;
-    if (Out->Failure.empty())
-      applyPlans(M, *Rules.Tables, Opts, *Out);
+    Out.Failure = Rules.Error;
+    if (Out.Failure.empty())
+      applyPlans(M, *Rules.Tables, Opts, Out);
   });
-  if (!Survived) {
-    bool IsChanged = Out.release()->IsChanged;
-    Out = std::make_unique<Findings>();
-    Out->Failure = "the plans crashed TPC";
-    Out->IsChanged = IsChanged;
-  }
-  return std::move(*Out);
 }
 
 /// Writes what this link needs, so that it can be repeated.

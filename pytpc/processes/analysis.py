@@ -15,7 +15,7 @@ import resource
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import cache
@@ -115,7 +115,7 @@ def analyse_processes(
         done += 1
         return found
 
-    with tools.running(), ThreadPoolExecutor(_workers(budget)) as pool:
+    with ThreadPoolExecutor(_workers(budget)) as pool:
         futures = [pool.submit(work, process) for process in joined]
         try:
             return [future.result() for future in futures]
@@ -235,14 +235,6 @@ class _Tools:
             raise RunError(f"{command[0]} was ended by signal {-process.returncode}")
         seconds = usage.ru_utime + usage.ru_stime
         return _Spent(process.returncode, texts[0], texts[1], seconds, usage.ru_maxrss >> 10)
-
-    @contextlib.contextmanager
-    def running(self) -> Iterator[None]:
-        """End what still runs when the block is left."""
-        try:
-            yield
-        finally:
-            self.end()
 
     def end(self) -> None:
         """End the programs that run, and begin no other."""

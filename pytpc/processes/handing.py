@@ -28,8 +28,7 @@ def delay(folders: Iterable[Path], base: Path) -> None:
         base: programs that use libraries below this folder wait, too.
     """
     for unit in units_of(folders):
-        if unit.plans.is_dir():
-            write_atomic(unit.waits, f"{base}\n".encode())
+        write_atomic(unit.waits, f"{base}\n".encode())
 
 
 def end_delay(folders: Iterable[Path]) -> bool:
@@ -45,17 +44,16 @@ def forget(folders: Iterable[Path]) -> list[str]:
     return _hand_all(units_of(folders), {})
 
 
-def hand_out(analysed: Sequence[Analysed], folders: Iterable[Path]) -> list[str]:
+def hand_out(parts: Iterable[Parts], folders: Iterable[Path]) -> list[str]:
     """Give each unit the plans of its processes; those without are analysed alone.
 
     Args:
-        analysed: the processes.
+        parts: the plans of the processes.
         folders: the build folders of all packages.
 
     Returns:
         The packages with units that have to be linked again.
     """
-    parts = [Parts.read(one) for one in analysed if one.plan is not None]
     of_units: dict[tuple[str, str], list[Parts]] = {}
     for one in parts:
         for unit in one.analysed.process.units:
@@ -132,21 +130,23 @@ class Parts:
 
     def digest_for(self, unit: str) -> str:
         """A text that differs when what is said of the functions of a unit does."""
-        names = self.analysed.functions.get(unit, frozenset()) & self.of_functions.keys()
-        said = [self.of_functions[name] for name in sorted(names)]
-        text = json.dumps([self.analysed.process.name, said])
+        text = json.dumps([self.analysed.process.name, self._said_of(unit)])
         return hashlib.sha256(text.encode()).hexdigest()
 
     def defaults_in(self, unit: str) -> list[Read]:
         """The parameters that a unit reads with a text as default."""
-        names = self.analysed.functions.get(unit, frozenset()) & self.of_functions.keys()
         infos = [
             entry["info"]
-            for name in sorted(names)
-            for kind, entry in self.of_functions[name]
+            for said in self._said_of(unit)
+            for kind, entry in said
             if kind == "parameters"
         ]
         return [(one["name"], one["default"]) for one in infos if isinstance(one["default"], str)]
+
+    def _said_of(self, unit: str) -> list[Sequence[Any]]:
+        """What is said of each function of a unit, in the order of their names."""
+        names = self.analysed.functions.get(unit, frozenset()) & self.of_functions.keys()
+        return [self.of_functions[name] for name in sorted(names)]
 
 
 def _described(functions: Sequence[Any], number: int) -> Any:  # noqa: ANN401

@@ -19,14 +19,11 @@ class Manifest:
     """What a link unit was made of.
 
     ``objects`` are its files of bitcode and its archives, in the order of the linker, each with
-    whether all members of an archive count; ``native`` are those that hold machine code. ``later``
-    says that the unit was linked without an analysis. ``rules`` and ``excluded`` are options of the
-    analysis.
+    whether all members of an archive count; ``native`` are those that hold machine code. ``rules``
+    and ``excluded`` are options of the analysis.
     """
 
-    path: Path
     source_root: str
-    later: bool
     objects: tuple[tuple[Path, bool], ...]
     native: tuple[Path, ...]
     profile: str
@@ -56,9 +53,7 @@ def read_manifest_of(unit: Unit) -> Manifest | None:
             if one["kind"] == "bitcode" or not one["path"].startswith(_SYSTEM)
         ]
         return Manifest(
-            path,
             data["source_root"],
-            bool(data["later"]),
             tuple(
                 (Path(one["path"]), bool(one["whole_archive"]))
                 for one in own

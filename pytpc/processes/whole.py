@@ -59,27 +59,29 @@ class WholeProcesses:
         if not units_of(folders):
             return ()
         try:
-            self._analyse()
-            return hand_out(self.analysed, folders)
+            return hand_out(self._analyse(), folders)
         except (TpcError, OSError, ValueError, KeyError, TypeError) as error:
             self.failure = str(error) if isinstance(error, TpcError) else repr(error)
             self.analysed = []
             return forget(folders)
 
-    def _analyse(self) -> None:
+    def _analyse(self) -> Sequence[Parts]:
+        """Find and analyse the processes; the plans of those that have one."""
         known = self._known()
         search = Search.begin(self.workspace.absolute(), self.bases, known)
         reads: Reads = {(one.package, one.link_unit): defaults_of(one) for one in known}
-        before = NONE
+        before, parts = NONE, list[Parts]()
         for _ in range(_ROUNDS):
             self.found = search.found(reads, self.corrections)
             if self.found == before:
-                return
+                break
             self.analysed = analyse_processes(
                 self.found.found, self.bases.root, self.budget, self.on_process
             )
+            parts = [Parts.read(one) for one in self.analysed if one.plan is not None]
             # Defaults of parameters name plugins, and are known only now if the code is new.
-            before, reads = self.found, {**reads, **self._reads()}
+            before, reads = self.found, {**reads, **_reads(parts)}
+        return parts
 
     def _known(self) -> Sequence[LinkUnit]:
         """What an earlier build found."""
@@ -88,13 +90,15 @@ class WholeProcesses:
         except TpcError:
             return ()
 
-    def _reads(self) -> Reads:
-        found: dict[tuple[str, str], list[Read]] = {}
-        for parts in [Parts.read(one) for one in self.analysed if one.plan is not None]:
-            for unit in parts.analysed.process.units:
-                known = found.setdefault((unit.package, unit.name), [])
-                known += parts.defaults_in(unit.full_name)
-        return found
+
+def _reads(parts: Sequence[Parts]) -> Reads:
+    """Of the units of all processes, the parameters with a text as default."""
+    found: dict[tuple[str, str], list[Read]] = {}
+    for one in parts:
+        for unit in one.analysed.process.units:
+            known = found.setdefault((unit.package, unit.name), [])
+            known += one.defaults_in(unit.full_name)
+    return found
 
 
 @dataclass(frozen=True, slots=True)
