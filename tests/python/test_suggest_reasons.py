@@ -6,8 +6,11 @@ import math
 
 import pytest
 from asking import ask, suggested
-from mission_samples import comparison, events
+from mission_samples import comparison, events, ns, static_info
 
+from pytpc.diagnosis.suggestion.remedy import remedy
+from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
 from pytpc.static.link_unit import Transform
 
 NAN, INF = math.nan, math.inf
@@ -123,3 +126,13 @@ def test_rounding_leaves_something_to_do():
     assert found.current == 5
     assert found.direction == "lower"
     assert 4.99 <= found.value < 5
+
+
+# Five comparisons compute what they compare; the two first ones are named.
+def test_many_comparisons_without_an_answer_are_told_in_short():
+    own = Transform("expression", text="limit * limit")
+    found = [comparison(n, "limit", type="derived", transform=own) for n in range(5)]
+    log = Recording("m", events([(n, n, 0, 1, 2) for n in range(5)]), (), 0, ns(9))
+    answer = remedy(log, static_info(*found), "limit", [Mark(ns(8), "I")])
+    why = "the threshold is computed from the parameter: limit * limit"
+    assert answer.reason == f"src/node.cpp:10: {why}; src/node.cpp:11: {why}; and 3 more"

@@ -63,6 +63,8 @@ NAMES: dict[Source, str] = {
 }
 """What each kind of evidence is called, the strongest first."""
 
+_MOST_REASONS = 2  # of a parameter whose comparisons all have one
+
 
 def remedy(
     recording: Recording,
@@ -105,7 +107,7 @@ def _by_log(
     """The remedy in the direction that the log shows; the arguments are those of ``remedy``."""
     flown = question.flown
     name, tracks, without = tracks_of(recording.events, recording.summaries, static_info, parameter)
-    reason = "; ".join(without) or "none of its comparisons was evaluated"
+    reason = _in_short(without) or "none of its comparisons was evaluated"
     for kind, times_ns in _kinds(marks, tracks, question.window_s):
         smallest = smallest_change_for_most(
             recording,
@@ -145,6 +147,13 @@ def _by_log(
         reason = refused or smallest[0].reason or reason
     current = value_in(recording, static_info, name)
     return Remedy(name, current, None, None, None, reason, reason, None, None, None)
+
+
+def _in_short(reasons: Sequence[str]) -> str:
+    """The first ones; a parameter of a large program may have hundreds of comparisons."""
+    text = "; ".join(reasons[:_MOST_REASONS])
+    more = len(reasons) - _MOST_REASONS
+    return f"{text}; and {more} more" if more > 0 else text
 
 
 def restored(found: Remedy, value: float, basis: Basis, words: str) -> Remedy:
