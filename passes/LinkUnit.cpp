@@ -107,13 +107,28 @@ static void analyse(Module &Seen, ModuleAnalysisManager &AM) {
 }
 
 /// The functions that must be copied for each of their calls before a report
-/// inside them is unambiguous.
+/// inside them is unambiguous. Callers come before callees: a copy of a caller
+/// has calls of its own.
 static std::vector<std::string> findSharedFunctions(Module &Seen,
                                                     ModuleAnalysisManager &AM) {
-  std::vector<std::string> Shared;
-  for (const Function *F : AM.getResult<GatherResults>(Seen).Shared)
-    Shared.push_back(F->getName().str());
-  return Shared;
+  const auto &Shared = AM.getResult<GatherResults>(Seen).Shared;
+  SmallPtrSet<Function *, 8> Done;
+  std::vector<std::string> Names;
+  auto Add = [&](auto &Self, Function *F) -> void {
+    if (!Done.insert(F).second)
+      return;
+    SmallPtrSet<Function *, 8> Callers;
+    for (const User *U : F->users())
+      if (const auto *Call = dyn_cast<CallBase>(U))
+        Callers.insert(const_cast<Function *>(Call->getFunction()));
+    for (Function *Caller : Shared)
+      if (Callers.contains(Caller))
+        Self(Self, Caller);
+    Names.push_back(F->getName().str());
+  };
+  for (Function *F : Shared)
+    Add(Add, F);
+  return Names;
 }
 
 /// Plans a report for each comparison found in \p Analysed. The link unit is
@@ -196,9 +211,9 @@ static Findings analyseSafely(Module &M, ModuleAnalysisManager &AM,
     Budget Limits(Opts.MaxSeconds, Opts.MaxMemory);
     AnalysedModule Analysed(M, Opts, Rules.Tables);
     auto Own = std::make_unique<OwnAnalyses>(Opts, Rules);
-    // A copy is another module: nothing is known of it.
+    // Nothing is known of the changed program.
     auto Separate = [&](std::vector<std::string> Names) {
-      if (!Analysed.separate(std::move(Names)))
+      if (!Analysed.separate(std::move(Names), [&] { Own.reset(); }))
         return false;
       Own = std::make_unique<OwnAnalyses>(Opts, Rules);
       return true;

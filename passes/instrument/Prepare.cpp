@@ -31,6 +31,7 @@ using namespace llvm;
 
 #define DEBUG_TYPE "tpc-prepare"
 STATISTIC(NumInlined, "Library functions that are inlined to be analysed");
+STATISTIC(NumPrepared, "Times that a copy of the program was prepared");
 
 namespace tpc {
 
@@ -169,52 +170,122 @@ static void shareDebugInfo(const Module &M, ValueToValueMapTy &Map) {
   Share(Finder.scopes());
 }
 
-AnalysedModule::AnalysedModule(Module &M, const Options &Opts,
-                               std::shared_ptr<const Rules> All)
-    : M(M), Opts(Opts), Tables(std::move(All)), Calls(*Tables) {
-  copy();
-  prepareCopy();
-}
-
-bool AnalysedModule::copy() {
+static std::unique_ptr<Module> copyOf(const Module &M) {
   // Allocated on the heap: after a crash this function is left without
   // unwinding, and the values of M refer to the map.
   auto Map = std::make_unique<ValueToValueMapTy>();
   shareDebugInfo(M, *Map);
-  std::unique_ptr<Module> Next = CloneModule(M, *Map);
-  Separation::Effect Done = Calls.applyTo(*Next);
-  if (!Copy || Done.LastRound) {
-    Instructions.clear();
-    Opcodes.clear();
-    Copy = std::move(Next);
-    IsSeparated = Done.Any;
-    Copied = std::move(Done.Copied);
-  }
-  return Done.LastRound;
+  return CloneModule(M, *Map);
+}
+
+AnalysedModule::AnalysedModule(Module &M, const Options &Opts,
+                               std::shared_ptr<const Rules> All)
+    : M(M), Opts(Opts), Tables(std::move(All)), Calls(*Tables),
+      Plain(copyOf(M)) {
+  IsSeparated = Calls.beginIn(*Plain);
+  prepareCopy();
 }
 
 void AnalysedModule::prepareCopy() {
+  ++NumPrepared;
+  Numbers.number(*Plain);
+  Instructions.clear();
+  Copy = copyOf(*Plain);
+  Opcodes.clear();
+  Begins.clear();
   // Moving a handle removes it from a list and adds it again.
   Instructions.reserve(Copy->getInstructionCount());
   Opcodes.reserve(Instructions.capacity());
-  for (Function &F : *Copy)
+  for (auto [There, F] : zip_equal(*Plain, *Copy)) {
+    Begins[&There] = Instructions.size();
     for (Instruction &I : instructions(F)) {
       Instructions.emplace_back(&I);
       Opcodes.push_back(I.getOpcode());
     }
+  }
   allowOptimisation(*Copy);
   prepare(*Copy, Opts, Tables);
 }
 
-bool AnalysedModule::separate(std::vector<std::string> Names) {
-  if (Names.empty())
+bool AnalysedModule::separate(std::vector<std::string> Names,
+                              function_ref<void()> BeforeChange) {
+  std::vector<SeparatedFunction> Done = Calls.addIn(*Plain, std::move(Names));
+  if (Done.empty())
     return false;
-  Calls.add(std::move(Names));
-  if (!copy()) {
-    Calls.removeLast();
-    return false;
+  IsSeparated = true;
+  std::vector<CopiedFunction> &Round = Copied.emplace_back();
+  for (const SeparatedFunction &One : Done) {
+    Round.push_back({One.From->getName().str(), {}});
+    for (const NumberedCall &Of : One.Calls)
+      Round.back().Calls.push_back(
+          {Of.Call->getFunction()->getName().str(), Of.Number,
+           Of.Call->getCalledFunction()->getName().str()});
   }
-  prepareCopy();
+  BeforeChange();
+  if (!repeatInCopy(Done))
+    prepareCopy();
+  return true;
+}
+
+/// Does in the prepared copy what was done in the other one: to prepare it anew
+/// takes several times as long. False if that would not be the same.
+bool AnalysedModule::repeatInCopy(ArrayRef<SeparatedFunction> Done) {
+  if (!all_of(Done,
+              [&](const SeparatedFunction &One) { return repeatInCopy(One); }))
+    return false;
+  // Arguments that had several values may have one in each copy.
+  removeNeverRun(*Copy);
+  return true;
+}
+
+bool AnalysedModule::repeatInCopy(const SeparatedFunction &Of) {
+  Function *From = Copy->getFunction(Of.From->getName());
+  if (!From || From->isDeclaration())
+    return false;
+  DenseMap<unsigned, Function *> CalleeOf;
+  SmallPtrSet<const Function *, 8> Alike = {From};
+  for (const NumberedCall &One : Of.Calls) {
+    Function *There = One.Call->getCalledFunction(), *Here = From;
+    if (There != Of.From) {
+      ValueToValueMapTy Map;
+      Here = cloneAs(There->getName(), *From, Map);
+      Begins[There] = Instructions.size();
+      if (!addHandles(*Of.From, Map))
+        return false;
+      Numbers.renew(*There, *Here);
+      Alike.insert(Here);
+    }
+    CalleeOf[CallNumbers::of(*One.Call)] = Here;
+  }
+  SmallVector<CallBase *, 8> Found;
+  for (Use &U : From->uses())
+    if (auto *Call = dyn_cast<CallBase>(U.getUser());
+        Call && Call->isCallee(&U) && !Alike.contains(Call->getFunction()))
+      Found.push_back(Call);
+  DenseSet<unsigned> Served;
+  for (CallBase *Call : Found) {
+    auto It = CalleeOf.find(CallNumbers::of(*Call));
+    if (It == CalleeOf.end())
+      return false;
+    Served.insert(It->first);
+    Call->setCalledFunction(It->second);
+  }
+  // A call that was inlined with its function does not have its number.
+  return Served.size() == CalleeOf.size();
+}
+
+/// Adds the instructions of a copy of \p From, a function of Plain. In the
+/// prepared copy, \p Map has its values. False if one is missing.
+bool AnalysedModule::addHandles(const Function &From, ValueToValueMapTy &Map) {
+  const size_t Begin = Begins.at(&From),
+               End = Begin + std::distance(inst_begin(From), inst_end(From));
+  for (size_t N = Begin; N != End; ++N) {
+    Value *V = Instructions[N];
+    if (V && !isa<Constant>(V) && !(V = Map.lookup(V)))
+      return false;
+    Instructions.emplace_back(V);
+    Opcodes.push_back(Opcodes[N]);
+  }
   return true;
 }
 

@@ -11,14 +11,17 @@
 #ifndef TPC_PREPARE_H
 #define TPC_PREPARE_H
 
+#include "instrument/CallNumbers.h"
 #include "instrument/Separation.h"
 
 #include "llvm/ADT/DenseMap.h"
+#include "llvm/ADT/STLFunctionalExtras.h"
 #include "llvm/IR/InstrTypes.h"
 #include "llvm/IR/Instruction.h"
 #include "llvm/IR/Module.h"
 #include "llvm/IR/PassManager.h"
 #include "llvm/IR/ValueHandle.h"
+#include "llvm/Transforms/Utils/ValueMapper.h"
 
 #include <memory>
 
@@ -37,9 +40,11 @@ public:
 
   llvm::Module &module() { return *Copy; }
 
-  /// Starts again with copies of each of \p Names. If none of them can be
-  /// copied, returns false and changes nothing.
-  bool separate(std::vector<std::string> Names);
+  /// Copies each of \p Names for each of its calls. \p BeforeChange is called
+  /// before module() changes. If none can be copied, returns false and changes
+  /// nothing.
+  bool separate(std::vector<std::string> Names,
+                llvm::function_ref<void()> BeforeChange);
 
   /// True if bringBack() changes the original module.
   bool isSeparated() const { return IsSeparated; }
@@ -57,21 +62,27 @@ public:
   const Rule *rowOf(const llvm::CallBase &Call) const;
 
 private:
-  /// True if the names added last had an effect.
-  bool copy();
   void prepareCopy();
+  bool repeatInCopy(llvm::ArrayRef<SeparatedFunction> Done);
+  bool repeatInCopy(const SeparatedFunction &Of);
+  bool addHandles(const llvm::Function &From, llvm::ValueToValueMapTy &Map);
 
   llvm::Module &M;
   const Options &Opts;
   std::shared_ptr<const Rules> Tables;
   Separation Calls;
-  std::unique_ptr<llvm::Module> Copy;
+  /// What bringBack() makes of M: not prepared, and never analysed.
+  std::unique_ptr<llvm::Module> Plain;
+  std::unique_ptr<llvm::Module> Copy; ///< of Plain, prepared
   bool IsSeparated = false;
   std::vector<std::vector<CopiedFunction>> Copied;
-  /// The instructions that Copy had before it was prepared, in order. Each is
-  /// now null or the value that promotion put in its place.
+  CallNumbers Numbers; ///< of Plain and Copy
+  /// The instructions of Plain as they are in Copy, in the order of Plain. Each
+  /// is null or the value that preparing put in its place.
   std::vector<llvm::WeakTrackingVH> Instructions;
-  std::vector<unsigned char> Opcodes; ///< their opcodes at that time
+  std::vector<unsigned char> Opcodes; ///< of the instructions of Plain
+  /// Where the instructions of the functions of Plain begin in these.
+  llvm::DenseMap<const llvm::Function *, size_t> Begins;
   llvm::DenseMap<const llvm::Value *, llvm::Value *> Back;
 };
 

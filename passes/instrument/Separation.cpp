@@ -113,6 +113,15 @@ static std::string copyName(const Function &F, unsigned &Number) {
   return Name;
 }
 
+Function *cloneAs(const Twine &Name, Function &F, ValueToValueMapTy &Map) {
+  Function *Copy = CloneFunction(&F, Map);
+  Copy->setName(Name);
+  Copy->setLinkage(GlobalValue::InternalLinkage);
+  Copy->setVisibility(GlobalValue::DefaultVisibility);
+  Copy->setComdat(nullptr);
+  return Copy;
+}
+
 SmallVector<NumberedCall, 8> Copier::separate(Function *F, bool KeepsOwn) {
   if (!F || !mayBeCopied(*F))
     return {};
@@ -129,38 +138,43 @@ SmallVector<NumberedCall, 8> Copier::separate(Function *F, bool KeepsOwn) {
   unsigned Number = 0;
   for (const NumberedCall &Of : drop_begin(Calls, Kept)) {
     ValueToValueMapTy Map;
-    Function *Copy = CloneFunction(F, Map);
-    Copy->setName(copyName(*F, Number));
-    Copy->setLinkage(GlobalValue::InternalLinkage);
-    Copy->setVisibility(GlobalValue::DefaultVisibility);
-    Copy->setComdat(nullptr);
-    Of.Call->setCalledFunction(Copy);
+    Of.Call->setCalledFunction(cloneAs(copyName(*F, Number), *F, Map));
     ++NumCopied;
   }
   return Calls;
 }
 
-Separation::Effect Separation::applyTo(Module &M) const {
-  callByOwnName(M);
-  Effect Done;
-  Done.Any = inlineTransparent(M, Tables);
-  for (const std::vector<std::string> &Names : Rounds) {
-    std::vector<CopiedFunction> &Copied = Done.Copied.emplace_back();
-    Copier Round;
-    for (const std::string &Name : Names) {
-      SmallVector<NumberedCall, 8> Calls = Round.separate(M.getFunction(Name));
-      if (Calls.empty())
-        continue;
-      Copied.push_back({Name, {}});
-      for (const NumberedCall &Of : Calls)
-        Copied.back().Calls.push_back(
-            {Of.Call->getFunction()->getName().str(), Of.Number,
-             Of.Call->getCalledFunction()->getName().str()});
-    }
-    Done.LastRound = !Copied.empty();
-    Done.Any |= Done.LastRound;
+/// Copies each function of \p Names in \p M for each of its calls.
+static std::vector<SeparatedFunction> separateAll(Module &M,
+                                                  ArrayRef<std::string> Names) {
+  std::vector<SeparatedFunction> Done;
+  Copier Round;
+  for (const std::string &Name : Names) {
+    Function *F = M.getFunction(Name);
+    SmallVector<NumberedCall, 8> Calls = Round.separate(F);
+    if (!Calls.empty())
+      Done.push_back({F, std::move(Calls)});
   }
   return Done;
+}
+
+bool Separation::beginIn(Module &M) const {
+  callByOwnName(M);
+  return inlineTransparent(M, Tables);
+}
+
+std::vector<SeparatedFunction>
+Separation::addIn(Module &M, std::vector<std::string> Names) {
+  std::vector<SeparatedFunction> Done = separateAll(M, Names);
+  if (!Done.empty())
+    Rounds.push_back(std::move(Names));
+  return Done;
+}
+
+void Separation::applyTo(Module &M) const {
+  beginIn(M);
+  for (const std::vector<std::string> &Names : Rounds)
+    separateAll(M, Names);
 }
 
 } // namespace tpc

@@ -10,6 +10,7 @@
 #include "llvm/ADT/SmallVector.h"
 #include "llvm/IR/InstrTypes.h"
 #include "llvm/IR/Module.h"
+#include "llvm/Transforms/Utils/ValueMapper.h"
 
 #include <string>
 #include <vector>
@@ -39,6 +40,10 @@ private:
   size_t Added = 0; ///< instructions
 };
 
+/// Copies \p F under a name of its own; \p Map gets what each value became.
+llvm::Function *cloneAs(const llvm::Twine &Name, llvm::Function &F,
+                        llvm::ValueToValueMapTy &Map);
+
 /// The calls of \p F from other functions, in the order of the module: the
 /// order of a use list differs between two copies of a module.
 llvm::SmallVector<NumberedCall, 8> callsOf(llvm::Function &F);
@@ -62,6 +67,12 @@ struct CopiedFunction {
   std::vector<Call> Calls;
 };
 
+/// A function that was copied, and its calls; all but the first call a copy.
+struct SeparatedFunction {
+  llvm::Function *From;
+  llvm::SmallVector<NumberedCall, 8> Calls;
+};
+
 /// Changes a program before reports are inserted: functions whose comparisons
 /// count as their callers' are inlined, and functions whose calls must be
 /// distinguished are copied for each call. Applied to two copies of a program,
@@ -70,20 +81,14 @@ class Separation {
 public:
   /// \p Tables name the functions to inline.
   explicit Separation(const Rules &Tables) : Tables(Tables) {}
-  /// Also copies each function of \p Names for each of its calls, after
-  /// everything added before.
-  void add(std::vector<std::string> Names) {
-    Rounds.push_back(std::move(Names));
-  }
-  void removeLast() { Rounds.pop_back(); }
-
-  /// What applyTo did.
-  struct Effect {
-    bool Any = false;
-    bool LastRound = false; ///< the names added last had an effect
-    std::vector<std::vector<CopiedFunction>> Copied; ///< for each round
-  };
-  Effect applyTo(llvm::Module &M) const;
+  /// Inlines in \p M; true if there was something to inline.
+  bool beginIn(llvm::Module &M) const;
+  /// In \p M, where everything up to now was done, also copies each function of
+  /// \p Names for each of its calls. Returns those that could be copied.
+  std::vector<SeparatedFunction> addIn(llvm::Module &M,
+                                       std::vector<std::string> Names);
+  /// Does it all in \p M, which is as the program was.
+  void applyTo(llvm::Module &M) const;
 
 private:
   const Rules &Tables;
