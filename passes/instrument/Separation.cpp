@@ -77,23 +77,35 @@ SmallVector<NumberedCall, 8> callsOf(Function &F) {
   return Ordered;
 }
 
-/// Inlines the functions in \p M whose comparisons count as their callers'.
-/// True if there are any.
-static bool inlineTransparent(Module &M, const Rules &Tables) {
-  bool Inlined = false;
+/// The functions in \p M whose comparisons count as their callers', by name:
+/// the order of a module is that of its files, and what is inlined first makes
+/// other code of the caller.
+static SmallVector<Function *, 8> findTransparent(Module &M,
+                                                  const Rules &Tables) {
+  SmallVector<Function *, 8> Found;
   for (Function &F : definedFunctions(M)) {
     const DISubprogram *SP = F.getSubprogram();
-    if (!SP || !mayBeCopied(F) ||
-        !Tables.isTransparent(qualifiedName(SP->getLinkageName())) ||
-        !isInlineViable(F).isSuccess())
-      continue;
-    for (const NumberedCall &Of : callsOf(F)) {
+    if (SP && mayBeCopied(F) &&
+        Tables.isTransparent(qualifiedName(SP->getLinkageName())) &&
+        isInlineViable(F).isSuccess())
+      Found.push_back(&F);
+  }
+  sort(Found, [](const Function *A, const Function *B) {
+    return A->getName() < B->getName();
+  });
+  return Found;
+}
+
+/// Inlines them. True if there are any.
+static bool inlineTransparent(Module &M, const Rules &Tables) {
+  bool Inlined = false;
+  for (Function *F : findTransparent(M, Tables))
+    for (const NumberedCall &Of : callsOf(*F)) {
       InlineFunctionInfo Info;
       Inlined |= InlineFunction(*Of.Call, Info, /*MergeAttributes=*/true,
                                 /*CalleeAAR=*/nullptr, /*InsertLifetime=*/false)
                      .isSuccess();
     }
-  }
   return Inlined;
 }
 
