@@ -44,6 +44,11 @@ struct Options {
   /// the source root is the longer prefix, and is not installed with ROS.
   bool isUserSource(llvm::StringRef Path) const;
 
+  /// The name of the link unit with its package, if that is known.
+  std::string fullName() const {
+    return Package.empty() ? LinkUnit : Package + "/" + LinkUnit;
+  }
+
   /// \p Path relative to SourceRoot if it is below it; otherwise \p Path.
   std::string relative(llvm::StringRef Path) const;
 

@@ -85,13 +85,13 @@ void ClassHierarchy::addTable(const GlobalVariable &Variable) {
     int64_t Top = Begin < 2 || Entries->getNumOperands() < 2
                       ? 0
                       : asNumber(Entries->getOperand(Begin - 2));
-    Group &G = Found.emplace_back(Group{-Top, {}});
+    Group &G = Found.emplace_back(Group{-Top, {}, Found.empty()});
     for (unsigned N = Begin; N < Entries->getNumOperands(); ++N)
       G.Functions.push_back(
           dyn_cast<Function>(Entries->getOperand(N)->stripPointerCasts()));
   }
   unsigned Number = numberOf(Name.drop_front(4));
-  Classes[Number].Table = std::move(Found);
+  append_range(Classes[Number].Table, std::move(Found));
   addObjects(Variable, Number);
 }
 
@@ -191,9 +191,9 @@ void ClassHierarchy::collect(unsigned Number, bool AtBeginning, unsigned Slot,
                              const CallBase &Call,
                              SmallVectorImpl<Function *> &Out) {
   const Class &C = Classes[Number];
-  for (const auto &[N, G] : enumerate(C.Table)) {
+  for (const Group &G : C.Table) {
     // A base that is not at the beginning has its table further on.
-    if (AtBeginning != (N == 0) || Slot >= G.Functions.size())
+    if (AtBeginning != G.IsFirst || Slot >= G.Functions.size())
       continue;
     Function *F = G.Functions[Slot];
     if (F && fits(Call, *F) && !is_contained(Out, F))

@@ -71,6 +71,7 @@ private:
   struct Group {
     int64_t Offset; ///< of the part of the object that has this table; bytes
     llvm::SmallVector<llvm::Function *, 8> Functions;
+    bool IsFirst; ///< of its table
   };
   /// Another class, and where the base of the two is in the derived one.
   struct Relative {
@@ -80,6 +81,7 @@ private:
   static constexpr int64_t Virtual = -1;
   struct Class {
     llvm::StringRef Name; ///< mangled
+    /// Of all tables: libraries that are opened may have a class of one name.
     llvm::SmallVector<Group, 1> Table;
     llvm::SmallVector<Relative, 2> Derived, Bases;
   };

@@ -34,7 +34,8 @@ namespace tpc {
 static bool fromJSON(const json::Value &V, UnitFiles::File &File,
                      json::Path P) {
   json::ObjectMapper O(V, P);
-  return O && O.map("path", File.Path) && O.mapOptional("whole", File.Whole);
+  return O && O.map("path", File.Path) && O.mapOptional("whole", File.Whole) &&
+         O.mapOptional("lazy", File.Lazy);
 }
 
 static bool fromJSON(const json::Value &V, UnitFiles &Unit, json::Path P) {
@@ -52,6 +53,7 @@ namespace {
 /// What is merged: docs/reference/formats.md.
 struct Input {
   std::vector<UnitFiles> Units;
+  std::vector<std::vector<std::string>> Scopes;
   std::vector<std::string> Without;
 };
 } // namespace
@@ -63,7 +65,8 @@ static Expected<Input> readInput(StringRef Text) {
   json::Path::Root Root("list");
   json::ObjectMapper O(*Parsed, Root);
   Input In;
-  if (!O || !O.map("units", In.Units) || !O.mapOptional("without", In.Without))
+  if (!O || !O.map("units", In.Units) || !O.mapOptional("scopes", In.Scopes) ||
+      !O.mapOptional("without", In.Without))
     return Root.getError();
   return In;
 }
@@ -97,6 +100,7 @@ int main(int Count, char **Words) {
   Merger Merged;
   for (const UnitFiles &Unit : In->Units)
     Merged.add(Unit);
+  Merged.join(In->Scopes);
   Merged.withoutPlugins(In->Without);
   Merged.removeUnreached();
   std::string Why;

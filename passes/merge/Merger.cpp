@@ -1,6 +1,7 @@
 //===- Merger.cpp ---------------------------------------------------------===//
 #include "merge/Merger.h"
 
+#include "merge/Symbols.h"
 #include "support/Functions.h"
 
 #include "llvm/ADT/STLExtras.h"
@@ -13,7 +14,9 @@
 #include "llvm/IR/Instructions.h"
 #include "llvm/Linker/Linker.h"
 #include "llvm/Object/Archive.h"
+#include "llvm/Object/ObjectFile.h"
 #include "llvm/Passes/PassBuilder.h"
+#include "llvm/Support/StringSaver.h"
 #include "llvm/Support/raw_ostream.h"
 #include "llvm/Transforms/IPO/GlobalDCE.h"
 #include "llvm/Transforms/IPO/Internalize.h"
@@ -22,14 +25,75 @@ using namespace llvm;
 
 namespace tpc {
 
+namespace {
+
+/// The names that an object defines for other files. One without bitcode has
+/// also those that it takes from them: of the others, the module says so.
+struct NamesOfObject {
+  std::vector<std::string> Defined, Taken;
+};
+
+} // namespace
+
+/// Whether it is bitcode.
+static bool isBitcode(MemoryBufferRef Buffer) {
+  return identify_magic(Buffer.getBuffer()) == file_magic::bitcode;
+}
+
+static NamesOfObject namesInBitcode(MemoryBufferRef Buffer) {
+  NamesOfObject Names;
+  LLVMContext Ctx; // not that of what is linked
+  Expected<std::unique_ptr<Module>> Code = getLazyBitcodeModule(Buffer, Ctx);
+  if (!Code) {
+    consumeError(Code.takeError()); // said when it is read
+    return Names;
+  }
+  for (const GlobalValue &V : (*Code)->global_values())
+    if (!V.isDeclarationForLinker() && !V.hasLocalLinkage())
+      Names.Defined.push_back(V.getName().str());
+  return Names;
+}
+
+static NamesOfObject namesInNative(MemoryBufferRef Buffer) {
+  NamesOfObject Names;
+  auto Object = object::ObjectFile::createELFObjectFile(Buffer);
+  if (!Object) {
+    consumeError(Object.takeError());
+    return Names;
+  }
+  using object::SymbolRef;
+  for (const SymbolRef &Each : (*Object)->symbols()) {
+    Expected<uint32_t> Flags = Each.getFlags();
+    Expected<StringRef> Name = Each.getName();
+    if (!Flags || !Name) {
+      consumeError(joinErrors(Flags.takeError(), Name.takeError()));
+      continue;
+    }
+    if (!(*Flags & SymbolRef::SF_Global))
+      continue;
+    if (!(*Flags & SymbolRef::SF_Undefined))
+      Names.Defined.push_back(Name->str());
+    else if (!(*Flags & SymbolRef::SF_Weak))
+      Names.Taken.push_back(Name->str());
+  }
+  return Names;
+}
+
 /// A unit while it is put together.
 struct Merger::UnitModule {
-  /// A member of an archive that is not linked yet.
+  /// An object that is not linked yet.
   struct Member {
-    std::string Name;
     MemoryBufferRef Buffer;
-    std::vector<std::string> Defines;
+    NamesOfObject Names;
   };
+
+  /// True if an object is linked that takes \p Name, and none that defines it.
+  bool needs(StringRef Name) const {
+    const GlobalValue *V = Code->getNamedValue(Name);
+    if (Known.contains(Name) || (V && !V->isDeclarationForLinker()))
+      return false;
+    return Wanted.contains(Name) || (V && !V->hasExternalWeakLinkage());
+  }
 
   UnitModule(const UnitFiles &Unit, LLVMContext &Ctx)
       : Name(Unit.Name), Code(std::make_unique<Module>(Unit.Name, Ctx)),
@@ -41,6 +105,9 @@ struct Merger::UnitModule {
   std::vector<std::unique_ptr<MemoryBuffer>> Buffers;
   std::vector<std::unique_ptr<object::Archive>> Archives;
   std::vector<Member> Members;
+  StringSet<> Known, Wanted; ///< what code without bitcode defines and takes
+  BumpPtrAllocator Memory;
+  StringSaver Names{Memory};
 };
 
 Merger::Merger() : Process(std::make_unique<Module>("process", Ctx)) {
@@ -64,8 +131,8 @@ void Merger::leaveOut(StringRef Unit, const Twine &File, std::string Why) {
 std::unique_ptr<Module> Merger::read(const UnitModule &Of,
                                      MemoryBufferRef Buffer) {
   StringRef File = Buffer.getBufferIdentifier();
-  if (identify_magic(Buffer.getBuffer()) != file_magic::bitcode) {
-    leaveOut(Of.Name, File, "no bitcode");
+  if (!isBitcode(Buffer)) {
+    leaveOut(Of.Name, File, "has no bitcode");
     return nullptr;
   }
   Expected<std::unique_ptr<Module>> Read = getLazyBitcodeModule(Buffer, Ctx);
@@ -92,11 +159,14 @@ void Merger::addFile(UnitModule &To, const UnitFiles::File &File) {
   }
   MemoryBufferRef Buffer = (*Opened)->getMemBufferRef();
   To.Buffers.push_back(std::move(*Opened));
-  if (identify_magic(Buffer.getBuffer()) != file_magic::archive) {
-    if (std::unique_ptr<Module> Code = read(To, Buffer))
-      link(To, std::move(Code));
-    return;
-  }
+  if (identify_magic(Buffer.getBuffer()) == file_magic::archive)
+    addArchive(To, File, Buffer);
+  else
+    addObject(To, Buffer, File.Lazy);
+}
+
+void Merger::addArchive(UnitModule &To, const UnitFiles::File &File,
+                        MemoryBufferRef Buffer) {
   Expected<std::unique_ptr<object::Archive>> Archive =
       object::Archive::create(Buffer);
   if (!Archive) {
@@ -110,104 +180,69 @@ void Merger::addFile(UnitModule &To, const UnitFiles::File &File) {
       leaveOut(To.Name, File.Path, toString(Content.takeError()));
       continue;
     }
-    std::string Name =
-        (File.Path + "(" + Content->getBufferIdentifier() + ")").str();
-    std::unique_ptr<Module> Code =
-        read(To, MemoryBufferRef(Content->getBuffer(), Name));
-    if (!Code)
-      continue;
-    Code->setModuleIdentifier(Name);
-    if (File.Whole) {
-      link(To, std::move(Code));
-      continue;
-    }
-    UnitModule::Member Member{std::move(Name), *Content, {}};
-    for (const GlobalValue &V : Code->global_values())
-      if (!V.isDeclarationForLinker() && !V.hasLocalLinkage())
-        Member.Defines.push_back(V.getName().str());
-    To.Members.push_back(std::move(Member));
+    StringRef Name =
+        To.Names.save(File.Path + "(" + Content->getBufferIdentifier() + ")");
+    addObject(To, MemoryBufferRef(Content->getBuffer(), Name), !File.Whole);
   }
   if (Bad)
     leaveOut(To.Name, File.Path, toString(std::move(Bad)));
   To.Archives.push_back(std::move(*Archive));
 }
 
-/// Links the members of archives that define what is still undefined.
+/// Links an object; if it \p IsLazy, it waits until it is needed.
+void Merger::addObject(UnitModule &To, MemoryBufferRef Buffer, bool IsLazy) {
+  if (IsLazy) {
+    To.Members.push_back({Buffer, isBitcode(Buffer) ? namesInBitcode(Buffer)
+                                                    : namesInNative(Buffer)});
+    return;
+  }
+  if (!isBitcode(Buffer)) {
+    const NamesOfObject Names = namesInNative(Buffer);
+    To.Known.insert(Names.Defined.begin(), Names.Defined.end());
+    To.Wanted.insert(Names.Taken.begin(), Names.Taken.end());
+  }
+  if (std::unique_ptr<Module> Code = read(To, Buffer))
+    link(To, std::move(Code));
+}
+
+/// Links the members of archives, and the other files that wait, that define
+/// what is still undefined.
 void Merger::addNeededMembers(UnitModule &To) {
   bool Again = true;
   while (Again) {
     Again = false;
     for (size_t N = 0; N < To.Members.size(); ++N) {
-      bool IsNeeded = any_of(To.Members[N].Defines, [&](StringRef Name) {
-        const GlobalValue *V = To.Code->getNamedValue(Name);
-        return V && V->isDeclarationForLinker() && !V->hasExternalWeakLinkage();
-      });
-      if (!IsNeeded)
+      if (none_of(To.Members[N].Names.Defined,
+                  [&](StringRef Name) { return To.needs(Name); }))
         continue;
       UnitModule::Member Member = std::move(To.Members[N]);
       To.Members.erase(To.Members.begin() + static_cast<ptrdiff_t>(N--));
-      std::unique_ptr<Module> Code =
-          read(To, MemoryBufferRef(Member.Buffer.getBuffer(), Member.Name));
-      Code->setModuleIdentifier(Member.Name);
-      Again |= link(To, std::move(Code));
+      addObject(To, Member.Buffer, /*IsLazy=*/false);
+      Again = true;
     }
   }
 }
 
-/// Makes \p V, a definition, the declaration of what another unit defines.
-static void makeDeclaration(GlobalValue &V) {
-  if (auto *F = dyn_cast<Function>(&V)) {
-    F->deleteBody();
-    F->setComdat(nullptr);
-  } else if (auto *Variable = dyn_cast<GlobalVariable>(&V)) {
-    Variable->setInitializer(nullptr);
-    Variable->setLinkage(GlobalValue::ExternalLinkage);
-    Variable->setComdat(nullptr);
-  } else {
-    Module &M = *V.getParent();
-    GlobalValue *Declared;
-    if (auto *T = dyn_cast<FunctionType>(V.getValueType()))
-      Declared = Function::Create(T, GlobalValue::ExternalLinkage,
-                                  V.getAddressSpace(), "", &M);
-    else
-      Declared = new GlobalVariable(M, V.getValueType(), /*isConstant=*/false,
-                                    GlobalValue::ExternalLinkage, nullptr);
-    Declared->takeName(&V);
-    V.replaceAllUsesWith(Declared);
-    V.eraseFromParent();
-  }
-}
-
-/// Prepares a unit for its place behind the others: what is visible in the unit
-/// alone becomes local, and what an earlier unit defines is taken from there.
-void Merger::giveWay(Module &Unit) {
-  SmallVector<GlobalValue *, 0> Known;
+/// Makes local what is visible in the unit alone.
+static void hide(Module &Unit) {
   for (GlobalValue &V : Unit.global_values()) {
     if (V.isDeclarationForLinker() || V.hasLocalLinkage() ||
-        V.hasAppendingLinkage())
+        V.hasAppendingLinkage() || V.hasDefaultVisibility() ||
+        V.hasProtectedVisibility())
       continue;
-    if (!V.hasDefaultVisibility() && !V.hasProtectedVisibility()) {
-      if (auto *Object = dyn_cast<GlobalObject>(&V))
-        Object->setComdat(nullptr);
-      V.setVisibility(GlobalValue::DefaultVisibility);
-      V.setLinkage(GlobalValue::InternalLinkage);
-      continue;
-    }
-    const GlobalValue *First = Process->getNamedValue(V.getName());
-    if (First && !First->hasLocalLinkage() && !First->isDeclarationForLinker())
-      Known.push_back(&V);
+    if (auto *Object = dyn_cast<GlobalObject>(&V))
+      Object->setComdat(nullptr);
+    V.setVisibility(GlobalValue::DefaultVisibility);
+    V.setLinkage(GlobalValue::InternalLinkage);
   }
-  // Aliases first: what they lead to may become a declaration.
-  for (GlobalValue *V : Known)
-    if (!isa<GlobalObject>(V))
-      makeDeclaration(*V);
-  for (GlobalValue *V : Known)
-    if (isa<GlobalObject>(V))
-      makeDeclaration(*V);
 }
 
 void Merger::add(const UnitFiles &Unit) {
-  UnitModule Code(Unit, Ctx);
+  Units.push_back(std::make_unique<UnitModule>(Unit, Ctx));
+  UnitModule &Code = *Units.back();
+  // What starts a program calls it.
+  if (Units.size() == 1)
+    Code.Wanted.insert("main");
   for (const UnitFiles::File &File : Unit.Files)
     addFile(Code, File);
   addNeededMembers(Code);
@@ -222,9 +257,20 @@ void Merger::add(const UnitFiles &Unit) {
   }
   sort(Names);
   Functions.push_back(std::move(Names));
-  giveWay(*Code.Code);
-  if (Linker::linkModules(*Process, std::move(Code.Code)))
-    leaveOut(Unit.Name, "", Complaint);
+  hide(*Code.Code);
+}
+
+void Merger::join(ArrayRef<std::vector<std::string>> Scopes) {
+  std::vector<Symbols::Unit> All;
+  for (const std::unique_ptr<UnitModule> &Each : Units)
+    All.push_back({Each->Name, *Each->Code});
+  Symbols Chosen(std::move(All), Scopes);
+  Chosen.choose();
+  Renamed = Chosen.renamed();
+  for (const std::unique_ptr<UnitModule> &Each : Units)
+    if (Linker::linkModules(*Process, std::move(Each->Code)))
+      leaveOut(Each->Name, "", Complaint);
+  Units.clear();
 }
 
 /// The class of the plugins that \p F, of class_loader, makes; empty if \p F is
@@ -268,7 +314,9 @@ static StringSet<> textsOf(const Module &M) {
 void Merger::removeUnreached() {
   const StringSet<> Texts = textsOf(*Process);
   internalizeModule(*Process, [&](const GlobalValue &V) {
-    return V.getName() == "main" || Texts.contains(V.getName());
+    auto It = Renamed.find(V.getName());
+    StringRef Name = It == Renamed.end() ? V.getName() : StringRef(It->second);
+    return Name == "main" || Texts.contains(Name);
   });
   PassBuilder PB;
   ModuleAnalysisManager AM;

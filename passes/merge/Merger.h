@@ -1,8 +1,6 @@
 //===- Merger.h - Makes one module of the link units of a process ---------===//
 //
-// A process is an executable with the libraries and plugins that it loads. Of
-// symbols that several of them define, the dynamic linker takes the first one;
-// so does this, unit by unit.
+// A process is an executable with the libraries and plugins that it loads.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_MERGER_H
@@ -24,6 +22,7 @@ struct UnitFiles {
   struct File {
     std::string Path;
     bool Whole = false; ///< all members of an archive, also those not needed
+    bool Lazy = false;  ///< only if needed, as a member of an archive
   };
   std::string Name;
   std::vector<File> Files;
@@ -34,11 +33,6 @@ struct LeftOut {
   std::string Unit, File, Why;
 };
 
-/// The attribute of a local function of a unit: the unit, a colon and its name
-/// there. In the process its name may differ, because another unit has one of
-/// that name.
-inline constexpr llvm::StringLiteral LocalOf = "tpc-local";
-
 class Merger {
 public:
   Merger();
@@ -46,6 +40,9 @@ public:
 
   /// Adds the code of the next unit in the order of the dynamic linker.
   void add(const UnitFiles &Unit);
+
+  /// Makes one module of all units; \p Scopes as in Symbols.
+  void join(llvm::ArrayRef<std::vector<std::string>> Scopes);
 
   /// Lets the factories of these plugins make nothing: a library registers all
   /// of its plugins, also those that the process never loads.
@@ -70,13 +67,17 @@ private:
   std::unique_ptr<llvm::Module> read(const UnitModule &Of,
                                      llvm::MemoryBufferRef Buffer);
   void addFile(UnitModule &To, const UnitFiles::File &File);
+  void addArchive(UnitModule &To, const UnitFiles::File &File,
+                  llvm::MemoryBufferRef Buffer);
+  void addObject(UnitModule &To, llvm::MemoryBufferRef Buffer, bool IsLazy);
   void addNeededMembers(UnitModule &To);
   bool link(UnitModule &To, std::unique_ptr<llvm::Module> From);
-  void giveWay(llvm::Module &Unit);
 
   llvm::LLVMContext Ctx;
   std::string Complaint; ///< what LLVM said last
   std::unique_ptr<llvm::Module> Process;
+  std::vector<std::unique_ptr<UnitModule>> Units; ///< until they are joined
+  llvm::StringMap<std::string> Renamed;           ///< see Symbols
   std::vector<LeftOut> Missing;
   std::vector<std::vector<std::string>> Functions;
 };

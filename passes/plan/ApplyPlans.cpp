@@ -107,7 +107,8 @@ bool Applier::mayReport(const Plan &Of, const DefinedFunctions &Defined) const {
 /// Finds the functions of all plans. Functions are inlined and copied as in the
 /// analysed program.
 void Applier::place() {
-  DefinedFunctions Before(M);
+  const std::string Unit = Opts.fullName();
+  DefinedFunctions Before(M, Unit);
   SmallVector<PlacedPlan *, 4> Separated;
   for (const auto &P : Plans)
     if (P->Of.Separated && mayReport(P->Of, Before))
@@ -118,7 +119,7 @@ void Applier::place() {
     return;
   Out.IsChanged = true;
   Separation(Tables).applyTo(M);
-  DefinedFunctions After(M);
+  DefinedFunctions After(M, Unit);
   for (PlacedPlan *P : Separated) {
     P->Functions.emplace(M, P->Of, After);
     P->Functions->separate();

@@ -6,6 +6,7 @@
 //===----------------------------------------------------------------------===//
 #include "plan/Checksum.h"
 
+#include "support/Functions.h"
 #include "support/Names.h"
 #include "support/Numbers.h"
 
@@ -32,6 +33,8 @@ namespace tpc {
 /// The name of \p V without what linking or copying put behind it.
 static StringRef stableName(const GlobalValue &V) {
   StringRef Name = V.getName().split(CopyMark).first;
+  if (const auto *F = dyn_cast<Function>(&V); F && F->hasFnAttribute(LocalOf))
+    Name = nameInUnit(*F);
   if (!V.hasLocalLinkage())
     return Name;
   // Two local values of one name get numbers.

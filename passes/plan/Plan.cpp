@@ -34,7 +34,7 @@ static bool fromJSON(const json::Value &E, PlannedFunction &F, Path P) {
     return O.map("in", F.In) && O.map("at", F.At) && F.In && F.At;
   return O.map("name", F.Name) && O.map("linkage", F.Linkage) &&
          O.map("file", F.File) && O.map("line", F.Line) &&
-         O.map("checksum", F.Checksum);
+         O.map("checksum", F.Checksum) && O.mapOptional("unit", F.Unit);
 }
 
 static bool fromJSON(const json::Value &E, PlannedValue &V, Path P) {
@@ -235,11 +235,14 @@ Expected<Plan> readPlan(StringRef File) {
 static json::Value toJSON(const PlannedFunction &F) {
   if (F.Of)
     return json::Object{{"of", *F.Of}, {"in", *F.In}, {"at", *F.At}};
-  return json::Object{{"name", F.Name},
-                      {"linkage", F.Linkage},
-                      {"file", json::fixUTF8(F.File)},
-                      {"line", F.Line},
-                      {"checksum", F.Checksum}};
+  json::Object O{{"name", F.Name},
+                 {"linkage", F.Linkage},
+                 {"file", json::fixUTF8(F.File)},
+                 {"line", F.Line},
+                 {"checksum", F.Checksum}};
+  if (!F.Unit.empty())
+    O["unit"] = json::fixUTF8(F.Unit);
+  return O;
 }
 
 static json::Value toJSON(const PlannedValue &V) {

@@ -26,6 +26,7 @@ inline constexpr int PlanVersion = 1;
 /// that serves the call At in function In.
 struct PlannedFunction {
   std::string Name, Linkage, File; ///< of none that is copied
+  std::string Unit; ///< the only link unit that has it, if that is known
   uint64_t Line = 0;
   std::string Checksum;
   std::optional<uint64_t> Of, In, At;

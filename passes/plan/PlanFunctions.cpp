@@ -19,7 +19,7 @@ std::string DefinedFunctions::placeOf(StringRef Linkage, StringRef File,
   return (Linkage + "\n" + File + "\n" + Twine(Line)).str();
 }
 
-DefinedFunctions::DefinedFunctions(Module &M) {
+DefinedFunctions::DefinedFunctions(Module &M, StringRef Unit) : Unit(Unit) {
   for (Function &F : M) {
     if (F.isDeclarationForLinker() || F.getName().contains(CopyMark))
       continue;
@@ -33,6 +33,8 @@ DefinedFunctions::DefinedFunctions(Module &M) {
 SmallVector<Function *, 1>
 DefinedFunctions::candidates(const PlannedFunction &F) const {
   SmallVector<Function *, 1> All;
+  if (!F.Unit.empty() && F.Unit != Unit)
+    return All;
   Function *Named = ByName.lookup(F.Name);
   if (Named)
     All.push_back(Named);

@@ -21,7 +21,8 @@ namespace tpc {
 /// them.
 class DefinedFunctions {
 public:
-  explicit DefinedFunctions(llvm::Module &M);
+  /// \p Unit is the full name of the link unit: its package and name.
+  DefinedFunctions(llvm::Module &M, llvm::StringRef Unit);
   /// Those that may be \p F, with whatever body.
   llvm::SmallVector<llvm::Function *, 1>
   candidates(const PlannedFunction &F) const;
@@ -33,6 +34,7 @@ private:
                              uint64_t Line);
   bool hasChecksum(llvm::Function &F, llvm::StringRef Checksum);
 
+  std::string Unit;
   llvm::StringMap<llvm::Function *> ByName;
   llvm::StringMap<llvm::SmallVector<llvm::Function *, 1>> ByPlace;
   llvm::DenseMap<llvm::Function *, std::string> Checksums;

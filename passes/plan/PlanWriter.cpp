@@ -81,6 +81,10 @@ uint64_t Numbering::function(StringRef Name) {
   PlannedFunction F;
   F.Name = F.Linkage = Name.str();
   if (const Function *There = M.getFunction(Name)) {
+    if (There->hasFnAttribute(LocalOf)) {
+      F.Unit = unitOf(*There).str();
+      F.Name = nameInUnit(*There).str();
+    }
     F.Linkage = sourceNameOf(*There).str();
     F.Checksum = checksumOf(*There);
     if (const DISubprogram *SP = There->getSubprogram()) {

@@ -11,6 +11,20 @@ namespace tpc {
 /// first one of several. tpc-merge sets it.
 inline constexpr llvm::StringLiteral UnitMark = "tpc-unit";
 
+/// The attribute of a function of a process that only its unit calls: the unit,
+/// a colon and its name there. In the process its name may differ, because
+/// another unit has one of that name. tpc-merge sets it.
+inline constexpr llvm::StringLiteral LocalOf = "tpc-local";
+
+/// The unit that \p F is marked with as the only one that calls it, and its
+/// name there.
+inline llvm::StringRef unitOf(const llvm::Function &F) {
+  return F.getFnAttribute(LocalOf).getValueAsString().split(':').first;
+}
+inline llvm::StringRef nameInUnit(const llvm::Function &F) {
+  return F.getFnAttribute(LocalOf).getValueAsString().split(':').second;
+}
+
 /// The functions that \p M defines and that can run. Left out are definitions
 /// that only exist for inlining, which is so only above -O0
 /// (`available_externally`): they belong to another module, and without them

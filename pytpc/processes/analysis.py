@@ -254,7 +254,6 @@ def _analyse(work: _Work, digest_of: Callable[[Path], str], begin: Callable[[], 
                 left_out.append(f"{unit.path}: has no bitcode; what it does is not seen")
             else:
                 units.append((unit, manifest))
-                left_out += [f"{one}: has no bitcode" for one in manifest.native]
         key = work.key(units, digest_of)
         result = _result_in(work.folder)
         is_new = result is None or result["key"] != key or not _is_complete(work.folder, result)
@@ -316,9 +315,10 @@ class _Work:
         """A text that differs when the result may."""
         tools = [digest_of(tool) for tool in (self.tools.passes, self.tools.merge)]
         budget = [self.budget.seconds, self.budget.memory_mib, _MOST_FUNCTIONS]
-        what: list[Any] = [self.process.name, *tools, budget, self._without()]
+        scopes = self.process.named_scopes
+        what: list[Any] = [self.process.name, *tools, budget, self._without(), scopes]
         for unit, one in units:
-            objects = [(str(path), whole, digest_of(path)) for path, whole in one.objects]
+            objects = [(file.as_json(), digest_of(file.path)) for file in one.objects]
             rules = [(rule, digest_of(Path(rule))) for rule in one.rules]
             options = [one.source_root, one.profile, rules, one.excluded, one.constants]
             what.append([unit.package, unit.name, objects, options])
@@ -333,12 +333,13 @@ class _Work:
         listed = [
             {
                 "name": unit.full_name,
-                "files": [{"path": str(path), "whole": whole} for path, whole in one.objects],
+                "files": [file.as_json() for file in one.objects],
             }
             for unit, one in units
         ]
+        scopes, without = self.process.named_scopes, self._without()
         (folder / "units.json").write_text(
-            json.dumps({"units": listed, "without": self._without()})
+            json.dumps({"units": listed, "scopes": scopes, "without": without})
         )
         tools, program = self.tools, folder / "all.bc"
         merged = tools.run([tools.merge, folder / "units.json", "-o", program])

@@ -15,17 +15,32 @@ _SYSTEM = ("/usr/lib", "/lib")
 
 
 @dataclass(frozen=True, slots=True)
+class ObjectFile:
+    """An object or archive that was linked.
+
+    ``whole`` says whether all members of an archive count, ``lazy`` whether an object counts only
+    if others need it, as a member of an archive does.
+    """
+
+    path: Path
+    whole: bool
+    lazy: bool
+
+    def as_json(self) -> dict[str, Any]:
+        """What ``tpc-merge`` reads."""
+        return {"path": str(self.path), "whole": self.whole, "lazy": self.lazy}
+
+
+@dataclass(frozen=True, slots=True)
 class Manifest:
     """What a link unit was made of.
 
-    ``objects`` are its files of bitcode and its archives, in the order of the linker, each with
-    whether all members of an archive count; ``native`` are those that hold machine code. ``rules``
-    and ``excluded`` are options of the analysis.
+    ``objects`` are its files of bitcode, of machine code and its archives, in the order of the
+    linker. ``rules`` and ``excluded`` are options of the analysis.
     """
 
     source_root: str
-    objects: tuple[tuple[Path, bool], ...]
-    native: tuple[Path, ...]
+    objects: tuple[ObjectFile, ...]
     profile: str
     rules: tuple[str, ...]
     excluded: tuple[str, ...]
@@ -55,11 +70,9 @@ def read_manifest_of(unit: Unit) -> Manifest | None:
         return Manifest(
             data["source_root"],
             tuple(
-                (Path(one["path"]), bool(one["whole_archive"]))
+                ObjectFile(Path(one["path"]), bool(one["whole_archive"]), bool(one["lazy"]))
                 for one in own
-                if one["kind"] != "native"
             ),
-            tuple(Path(one["path"]) for one in own if one["kind"] == "native"),
             options["profile"],
             tuple(options["rules"]),
             tuple(options["excluded"]),

@@ -77,7 +77,9 @@ class Process:
     """An executable with the units of the workspace that it loads, in the order of the linker.
 
     ``program`` is its package and name; ``host`` the file, which may be one of the system that
-    loads plugins of the workspace, and is None if it is not installed here. ``starts`` are the
+    loads plugins of the workspace, and is None if it is not installed here. ``scopes`` are the
+    units in which the dynamic linker looks symbols up: first those that all units use, then those
+    of each library that is opened later and that itself alone uses. ``starts`` are the
     nodes of launch files that run so. ``outcome`` is None where it was not analysed as a whole.
     """
 
@@ -86,6 +88,7 @@ class Process:
     host: Path | None
     units: tuple[Unit, ...]
     choices: tuple[Choice, ...] = ()
+    scopes: tuple[tuple[Unit, ...], ...] = ()
     starts: tuple[Start, ...] = ()
     outcome: Outcome | None = None
 
@@ -98,6 +101,11 @@ class Process:
     def plugins(self) -> tuple[Plugin, ...]:
         """The plugins that it loads."""
         return tuple(plugin for choice in self.choices for plugin in choice.plugins)
+
+    @property
+    def named_scopes(self) -> list[list[str]]:
+        """The full names of the units in each of its scopes."""
+        return [[unit.full_name for unit in scope] for scope in self.scopes]
 
     @property
     def is_joined(self) -> bool:

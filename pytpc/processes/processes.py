@@ -36,6 +36,9 @@ from pytpc.workspace.colcon import Bases
 from pytpc.workspace.packages import find_packages
 
 _PATHS = ("CMAKE_PREFIX_PATH", "AMENT_PREFIX_PATH")
+# With it, class_loader lets all libraries use what it opens (RTLD_GLOBAL).
+_OPENS_FOR_ALL = "libPocoFoundation.so"
+_Units = tuple[Unit, ...]
 Progress = Callable[[int, int], None]
 Read = tuple[str, str]
 """A parameter and its default, a text."""
@@ -274,9 +277,10 @@ class _Finder:
             for choice in choices.values():
                 yield from (plugin.library for plugin in choice.plugins)
 
-        units = self._loaded(host, choose)
+        units, scopes = self._loaded(host, choose)
         kept = tuple(choice for choice in choices.values() if choice.plugins)
-        return Process(program, program, host, units, kept, () if start is None else (start,))
+        starts = () if start is None else (start,)
+        return Process(program, program, host, units, kept, scopes, starts)
 
     def _asked(self, binaries: Sequence[Binary], host: Path | None) -> set[str]:
         """The base classes that the code asks for.
@@ -313,19 +317,27 @@ class _Finder:
 
     def _loaded(
         self, host: Path | None, more: Callable[[Sequence[Binary]], Iterable[Path]]
-    ) -> tuple[Unit, ...]:
-        """The units of a process; ``more`` says what else the code that is there loads."""
-        first = [] if host is None else [host]
+    ) -> tuple[_Units, tuple[_Units, ...]]:
+        """The units of a process, and its scopes; ``more`` says what the code there opens."""
+        opened: list[Path] = []
         while True:
-            binaries = self.libraries.all_of(first)
+            scopes = [self.libraries.all_of([] if host is None else [host])]
+            scopes += [self.libraries.all_of([path]) for path in opened]
+            binaries = list({one.path: one for scope in scopes for one in scope}.values())
             own = [one for one in binaries if one.path in self.built or one.path == host]
             named = {path for one in own for path in self._named_by(one)}
             there = {one.path for one in binaries}
             wanted = dict.fromkeys((*more(binaries), *sorted(named)))
             new = [path for path in wanted if path not in there]
             if not new:
-                return tuple(self.built[one.path] for one in binaries if one.path in self.built)
-            first += new
+                break
+            opened += new
+        if any(one.soname.startswith(_OPENS_FOR_ALL) for one in binaries):
+            scopes = [binaries]
+        return self._units(binaries), tuple(self._units(scope) for scope in scopes)
+
+    def _units(self, binaries: Iterable[Binary]) -> _Units:
+        return tuple(self.built[one.path] for one in binaries if one.path in self.built)
 
     def _named_by(self, binary: Binary) -> Iterator[Path]:
         """Libraries of the workspace that code loads by the names of their files."""
@@ -377,13 +389,14 @@ class _Finder:
         plugins = [corrections.plugin(one, self.plugins) for one in given.plugins]
         extra = [corrections.library(one, self.libraries.ours) for one in given.libraries]
         wanted = [*(plugin.library for plugin in plugins), *extra]
-        units = self._loaded(host, lambda _binaries: wanted)
+        units, scopes = self._loaded(host, lambda _binaries: wanted)
         bases = dict.fromkeys(plugin.base for plugin in plugins)
         choices = tuple(
             Choice(base, tuple(one for one in plugins if one.base == base), "corrected")
             for base in bases
         )
-        return Process(given.name or program, program, host, units, choices)
+        name = given.name or program
+        return Process(name, program, host, units, choices, scopes)
 
 
 def _in_order(candidates: Sequence[Plugin], named: Sequence[Plugin]) -> tuple[Plugin, ...]:

@@ -72,9 +72,9 @@ def test_programs_with_the_plugins_that_launch_files_name(built):
         "plugged_drive/drive@careful": [
             "drive_node",
             "plugged_careful",
-            "plugged_layers",
             "plugged_limits",
             "plugged_map",
+            "plugged_layers",
         ],
         "plugged_drive/drive@direct": ["drive_node", "plugged_direct"],
     }
@@ -191,7 +191,7 @@ def test_corrections_replace_what_was_found(changed):
         "  nodelet/nodelet: []\n"
     )
     assert units_of(shown(changed)) == {
-        "silent": ["drive_node", "plugged_twins", "plugged_map", "plugged_limits"]
+        "silent": ["drive_node", "plugged_twins", "plugged_limits", "plugged_map"]
     }
 
 
