@@ -85,6 +85,27 @@ def symbols(path: Path) -> tuple[frozenset[str], frozenset[str]]:
     return frozenset(defined), frozenset(taken)
 
 
+@lru_cache(maxsize=4096)
+def may_have_class(path: Path, name: str) -> bool:
+    """Whether a library may define a class; true where its name does not tell.
+
+    Args:
+        path: the library.
+        name: the class with its scopes.
+    """
+    parts = name.removeprefix("::").split("::")
+    if not all(part.isidentifier() for part in parts):
+        return True
+    # In names of symbols and types, each part has its length before it.
+    mangled = [f"{len(part.encode())}{part}".encode() for part in parts]
+    try:
+        with _mapped(path) as content:
+            found = [content.find(part) >= 0 for part in mangled]
+            return all(found) or content.find(f"\0{name}\0".encode()) >= 0
+    except (OSError, ValueError):
+        return True
+
+
 def read_binary(path: Path) -> Binary | None:
     """Read an ELF file; None if it is another kind of file, or broken."""
     try:

@@ -13,7 +13,7 @@ from xml.parsers import expat
 
 from pytpc.base.errors import InputError
 from pytpc.base.source_bytes import read_bytes
-from pytpc.processes.binaries import COMPONENT
+from pytpc.processes.binaries import COMPONENT, may_have_class
 from pytpc.workspace.packages import MANIFEST, Package, exported_plugins
 
 _INDEX = Path("share/ament_index/resource_index")
@@ -65,6 +65,14 @@ class _Reader:
         self.faults[str(InputError(text, path, line))] = None
 
     def add(self, plugin: Plugin) -> None:
+        # It counts all the same: only the names in the library say so.
+        if not may_have_class(plugin.library, plugin.kind):
+            self.fault(
+                f"{plugin.library.name} has no class {plugin.kind}; correct its name, or build the"
+                " library again",
+                plugin.path,
+                plugin.line,
+            )
         key = plugin.name, plugin.base
         first = self.found.setdefault(key, plugin)
         is_same = (first.library, first.kind) == (plugin.library, plugin.kind)

@@ -161,6 +161,58 @@ def test_plugin_files_with_other_encodings_and_languages(tmp_path, head, fault):
     assert [fault in one for one in declared.faults] == ([True] if fault else [])
 
 
+# The name of a class in an inline namespace, and that of a type with another name, are no faults.
+def test_classes_that_the_library_does_not_have(tmp_path):
+    add_package(tmp_path / "src/grid", more=AMENT)
+    text = """
+namespace grid {
+struct Base { virtual ~Base() {} };
+inline namespace v1 { struct Wall : Base {}; }
+}
+grid::Base *wall() { return new grid::Wall; }
+const char *text() { return "grid::Alias"; }
+"""
+    library = compiled(tmp_path, "liblayers.so", text)
+    index = tmp_path / INDEX
+    (index / "nav__pluginlib__plugin").mkdir(parents=True)
+    (index / "nav__pluginlib__plugin/grid").write_text("layers.xml\n")
+    (index / "rclcpp_components").mkdir()
+    (index / "rclcpp_components/grid").write_text("grid::Wall;lib/liblayers.so\nGone;layers\n")
+    kinds = ("grid::Wall", "grid::Alias", "grid::Wal", "gird::Wall", "grid::Wall<int>")
+    classes = "\n".join(
+        f'<class type="{kind.replace("<", "&lt;")}" base_class_type="B"/>' for kind in kinds
+    )
+    (tmp_path / "layers.xml").write_text(f'<library path="layers">\n{classes}\n</library>')
+    packages = find_packages(tmp_path / "src")
+    found = declared_plugins(packages, [tmp_path], {"liblayers.so": library})
+    assert [one.kind for one in found.plugins] == [*kinds, "grid::Wall", "Gone"]
+    end = "; correct its name, or build the library again"
+    assert found.faults == (
+        f"{tmp_path}/layers.xml:4: liblayers.so has no class grid::Wal{end}",
+        f"{tmp_path}/layers.xml:5: liblayers.so has no class gird::Wall{end}",
+        f"{index}/rclcpp_components/grid:2: liblayers.so has no class Gone{end}",
+    )
+
+
+def test_two_files_that_declare_a_plugin_of_one_name(tmp_path):
+    add_package(tmp_path / "src/grid", more=AMENT)
+    index = tmp_path / INDEX / "nav__pluginlib__plugin"
+    index.mkdir(parents=True)
+    (index / "grid").write_text("one.xml\ntwo.xml\n")
+    for name in ("one", "two"):
+        (tmp_path / f"{name}.xml").write_text(
+            f'<library path="{name}">\n<class name="grid/Wall" type="grid::Wall"'
+            ' base_class_type="nav::Layer"/>\n</library>'
+        )
+    libraries = {f"lib{name}.so": tmp_path / f"lib{name}.so" for name in ("one", "two")}
+    found = declared_plugins(find_packages(tmp_path / "src"), [tmp_path], libraries)
+    assert [one.library.name for one in found.plugins] == ["libone.so"]
+    assert found.faults == (
+        f"{tmp_path}/two.xml:2: there is another plugin grid/Wall for nav::Layer, in"
+        f" {tmp_path}/one.xml:2; that one counts",
+    )
+
+
 # The parameters of what is loaded are read in the process, and so are those around it.
 def test_parameters_of_what_is_loaded_and_of_namespaces():
     nodes = [
