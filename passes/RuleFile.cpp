@@ -69,7 +69,10 @@ static constexpr StringLiteral ReadKeys[] = {
 static constexpr StringLiteral ConfigKeys[] = {"handle", "resolve"};
 static constexpr StringLiteral ReadRequired[] = {"name", "value"};
 static constexpr StringLiteral ExposingKeys[] = {"topic"};
-static constexpr StringLiteral TopicKeys[] = {"name"};
+static constexpr StringLiteral TopicKeys[] = {"name", "handle"};
+static constexpr StringLiteral TopicRequired[] = {"name"};
+static constexpr StringLiteral SubscriptionKeys[] = {"name", "callbacks",
+                                                     "handle"};
 static constexpr StringLiteral NameKeys[] = {"parts", "to", "absolute"};
 static constexpr StringLiteral NameRequired[] = {"parts", "to"};
 static constexpr StringLiteral TextKeys[] = {"relation"};
@@ -83,7 +86,8 @@ static constexpr StringLiteral CallbackRequired[] = {"callbacks"};
 static const Section Sections[] = {
     {"reads", Rule::Read, ReadKeys, ReadRequired},
     {"exposing", Rule::Exposing, ExposingKeys, {}},
-    {"topics", Rule::Topic, TopicKeys, TopicKeys},
+    {"topics", Rule::Topic, TopicKeys, TopicRequired},
+    {"subscriptions", Rule::Subscription, SubscriptionKeys, {}},
     {"handles", Rule::Naming, NameKeys, NameRequired},
     {"names", Rule::Naming, NameKeys, NameRequired},
     {"accessors", Rule::Accessor, AccessorKeys, {}},
@@ -276,6 +280,8 @@ Error Reader::meaning(const Rule &R, StringRef Place) {
       !is_contained(Resolving, R.Resolve))
     return wrong((Place + "/resolve").str(),
                  "must be \"this\", \"global\" or \"node\"");
+  if (R.Kind == Rule::Subscription && !R.Name && R.Callbacks.empty())
+    return wrong(Place, "must have \"name\", \"callbacks\" or both");
   if (R.Slot.has_value() == R.Symbol.empty())
     return wrong(Place, "must have both \"slot\" and \"symbol\", or neither");
   if (R.Many == Rule::List && R.Value)

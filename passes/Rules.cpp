@@ -228,7 +228,9 @@ RuleMatches::RuleMatches(std::shared_ptr<const Rules> All, Module &M)
   std::vector<std::string> Classes; // classes whose fields are parameters
   for (const Function &F : M) {
     const Rules::Match &Found = Tables->match(F);
-    if (Found.Row) {
+    if (Found.Row && Found.Row->Kind == Rule::Subscription) {
+      Subscribing[&F] = Found.Row;
+    } else if (Found.Row) {
       Rows[&F] = Found.Row;
       if (Found.Row->Kind == Rule::Config)
         Classes.push_back(classArgument(F));
@@ -255,6 +257,11 @@ RuleMatches::RuleMatches(std::shared_ptr<const Rules> All, Module &M)
 const Rule *RuleMatches::match(const CallBase &Call) const {
   const Function *Callee = Call.getCalledFunction();
   return Callee ? Rows.lookup(Callee) : nullptr;
+}
+
+const Rule *RuleMatches::subscription(const CallBase &Call) const {
+  const Function *Callee = Call.getCalledFunction();
+  return Callee ? Subscribing.lookup(Callee) : nullptr;
 }
 
 const RuleMatches::Inlined &RuleMatches::inlined(const DISubprogram &F) const {

@@ -35,17 +35,18 @@ struct Options;
 /// One row. Argument numbers count the parameters as written in the source.
 struct Rule {
   enum KindTy {
-    Read,     ///< reads a parameter
-    Exposing, ///< makes the state of a node visible
-    Topic,    ///< gives a publisher or client its topic
-    Naming,   ///< makes a name, or a node handle with a namespace
-    Accessor, ///< takes the value out of an object that a read returned
-    Config,   ///< passes a class whose fields are all parameters
-    Text,     ///< compares or copies text
-    Held,     ///< puts a number into an object, or takes it out
-    Property, ///< says something about a list or struct, such as its size
-    Identity, ///< returns the name of a parameter that an object holds
-    Callback, ///< keeps functions that it calls later
+    Read,         ///< reads a parameter
+    Exposing,     ///< makes the state of a node visible
+    Topic,        ///< gives a publisher or client its topic
+    Naming,       ///< makes a name, or a node handle with a namespace
+    Accessor,     ///< takes the value out of an object that a read returned
+    Config,       ///< passes a class whose fields are all parameters
+    Text,         ///< compares or copies text
+    Held,         ///< puts a number into an object, or takes it out
+    Property,     ///< says something about a list or struct, such as its size
+    Identity,     ///< returns the name of a parameter that an object holds
+    Callback,     ///< keeps functions that it calls later
+    Subscription, ///< calls functions with the messages of a topic
   };
   /// A part of the name that a row of kind Naming makes.
   struct Part {
@@ -238,6 +239,9 @@ public:
 
   /// The row that matches the callee of \p Call, or null.
   const Rule *match(const llvm::CallBase &Call) const;
+  /// The same of a row that describes a subscription. The body of such a
+  /// function is analysed.
+  const Rule *subscription(const llvm::CallBase &Call) const;
   /// True if the body of \p F is not analysed: a row describes \p F, or its
   /// name begins with an opaque prefix.
   bool isOpaque(const llvm::Function &F) const {
@@ -272,7 +276,8 @@ public:
   const ContainerMethod *container(const llvm::CallBase &Call) const;
   /// True if \p F is never inlined, however small it is.
   bool staysCall(const llvm::Function &F) const {
-    return isOpaque(F) || Kept.contains(&F) || Containers.contains(&F);
+    return isOpaque(F) || Kept.contains(&F) || Containers.contains(&F) ||
+           Subscribing.contains(&F);
   }
   /// True if \p F stays a call and its body is analysed: it stores functions or
   /// bound arguments.
@@ -288,7 +293,7 @@ private:
   const Inlined &inlined(const llvm::DISubprogram &F) const;
 
   std::shared_ptr<const Rules> Tables;
-  llvm::DenseMap<const llvm::Function *, const Rule *> Rows;
+  llvm::DenseMap<const llvm::Function *, const Rule *> Rows, Subscribing;
   llvm::DenseSet<const llvm::Function *> Opaque, Kept;
   llvm::MapVector<const llvm::Function *, ContainerMethod> Containers;
   /// Each name is demangled once.

@@ -110,6 +110,21 @@ std::string Describer::source(const Comparison &C) const {
   return C.Reads.empty() ? "" : json::fixUTF8(Reads[C.Reads.front()].Name);
 }
 
+/// The messages of other nodes that \p C depends on.
+json::Array Describer::received(const Comparison &C) {
+  json::Array List;
+  for (const ReceivedMessage &R : Received.of(C)) {
+    const DILocation *Loc = R.From->At->getDebugLoc();
+    List.push_back(
+        json::Object{{"topic", textOrNull(R.From->Topic)},
+                     {"type", textOrNull(R.From->Type)},
+                     {"by", R.IsValue ? "value" : "control"},
+                     {"file", json::fixUTF8(Opts.relative(pathOf(Loc)))},
+                     {"lineno", Loc ? Loc->getLine() : 0}});
+  }
+  return List;
+}
+
 json::Object Describer::comparison(const SourcePlace &P) {
   const Comparison &C = *P.Instances.front();
   // A constant has no read.
@@ -142,8 +157,14 @@ json::Object Describer::comparison(const SourcePlace &P) {
   O["default"] = Read ? Read->Default : nullptr;
   O["read_at"] = Read ? where(*Read->Call) : nullptr;
   O["exposed_at"] = where(*Nearest.At);
+  const auto *Shows = dyn_cast<CallBase>(Nearest.At);
+  if (std::string Type = Shows && Nearest.IsCall ? Received.typeOf(*Shows) : "";
+      !Type.empty())
+    O["message"] = std::move(Type);
   if (Read)
     O["path"] = Explain.path(C);
+  if (json::Array From = Read ? received(C) : json::Array(); !From.empty())
+    O["received"] = std::move(From);
   return O;
 }
 

@@ -13,6 +13,7 @@
 #include "output/ExplainInfo.h"
 #include "params/ParamCallFinder.h"
 #include "results/LoopDepths.h"
+#include "results/Messages.h"
 #include "slice/ExternCallFinder.h"
 
 namespace tpc {
@@ -32,7 +33,8 @@ public:
         Slice(AM.getResult<BackwardPropagate>(M)),
         Gathered(AM.getResult<GatherResults>(M)),
         Loops(AM.getResult<LoopDepths>(M)),
-        Names(AM.getResult<LocationTypesAnalysis>(M)), Explain(M, AM, Opts) {}
+        Names(AM.getResult<LocationTypesAnalysis>(M)), Received(M, AM),
+        Explain(M, AM, Opts) {}
 
   llvm::json::Array parameters() const;
   llvm::json::Array exposing() const;
@@ -51,6 +53,7 @@ private:
   llvm::json::Value where(const llvm::Instruction &I) const;
   std::string source(const Comparison &C) const;
   std::string variable(const Comparison &C) const;
+  llvm::json::Array received(const Comparison &C);
 
   llvm::Module &M;
   const Options &Opts;
@@ -65,6 +68,7 @@ private:
   const GatheredResults &Gathered;
   const LoopDepthsResult &Loops;
   VariableNames Names;
+  Messages Received;
   ExplainInfo Explain;
   SourceLines Lines;
 };

@@ -5,7 +5,7 @@ from __future__ import annotations
 import gc
 import uuid
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, fields
+from dataclasses import astuple, dataclass, fields
 from importlib.metadata import PackageNotFoundError, version
 from typing import TypeVar
 
@@ -22,6 +22,7 @@ from pytpc.python_analysis.comparisons.gather import (
 )
 from pytpc.python_analysis.comparisons.path import path_of
 from pytpc.python_analysis.comparisons.reads import Exposed, Read, find_exposing, find_reads
+from pytpc.python_analysis.comparisons.received_messages import Messages, type_shown
 from pytpc.python_analysis.comparisons.slicing import Slice, Slicer
 from pytpc.python_analysis.flow.constants import DYNAMIC, Constants
 from pytpc.python_analysis.flow.raising import add_raising_calls
@@ -41,6 +42,7 @@ from pytpc.static.link_unit import (
     NotExposed,
     ParameterRead,
     Place,
+    Received,
     Tool,
 )
 
@@ -63,6 +65,7 @@ class Analysed:
     slice: Slice
     found: list[Found]
     others: list[Found]
+    messages: Messages
 
 
 def analyse(program: Program, rules: Rules) -> Analysed:
@@ -77,11 +80,15 @@ def analyse(program: Program, rules: Rules) -> Analysed:
     follower.run(reads)
     follower.decide()
     fixed = find_constants(follower) if rules.constants else []
-    found_slice = Slicer(flow, leaving, follower.outcomes.selecting).run(exposed)
+    slicer = Slicer(flow, leaving, follower.outcomes.selecting)
+    found_slice = slicer.run(exposed)
     gatherer = Gatherer(follower, found_slice, counts_shown=rules.profile != "thesis")
     found, others = gatherer.run()
     found += gatherer.constants(fixed, [*found, *others])
-    return Analysed(program, rules, flow, reads, exposed, follower, found_slice, found, others)
+    messages = Messages.of(flow, constants, rules, slicer)
+    return Analysed(
+        program, rules, flow, reads, exposed, follower, found_slice, found, others, messages
+    )
 
 
 def analyse_entry(
@@ -295,7 +302,19 @@ class Writer:
             end_lineno=end_line,
             end_column=end_column,
             operand=found.operand_text,
+            message=type_shown(self.all.flow, exposed, self.all.rules),
+            received=self._received(found) if found.facts else None,
         )
+
+    def _received(self, found: Found) -> tuple[Received, ...] | None:
+        arrivals = [
+            Received(
+                each.subscription.topic, each.subscription.type, each.by,
+                *astuple(self._place(each.subscription.instr)),
+            )
+            for each in self.all.messages.received(found)
+        ]  # fmt: skip
+        return tuple(arrivals) or None
 
     def _not_exposed(self) -> list[NotExposed]:
         found = []

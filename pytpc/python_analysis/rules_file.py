@@ -83,6 +83,8 @@ class Rules:
 
     ``arithmetic``: the name of an operation; ``units``: the factor of an argument with a keyword.
     ``values``: attributes and methods that give the value of a parameter object, and their factor.
+    ``topics``, ``types``: the arguments that name a topic and the class of its messages.
+    ``subscriptions``: the callbacks that get the messages.
     ``services``: the callbacks whose results are exposed; ``overriding``: the same for the methods
     of a program's classes, by the class that they are derived from. ``hands``: a callback, and the
     class of the object that it gets. ``tidy``: classes whose methods neither keep what they get nor
@@ -94,6 +96,8 @@ class Rules:
     reads: dict[str, ReadRule] = field(default_factory=dict)
     exposing: set[str] = field(default_factory=set)
     topics: dict[str, Argument] = field(default_factory=dict)
+    types: dict[str, Argument] = field(default_factory=dict)
+    subscriptions: dict[str, Argument] = field(default_factory=dict)
     makes: dict[str, str] = field(default_factory=dict)
     configs: dict[str, ConfigRule] = field(default_factory=dict)
     services: dict[str, list[Argument]] = field(default_factory=dict)
@@ -175,8 +179,14 @@ def _add_row(rules: Rules, name: str, row: dict[str, Any]) -> None:
             )
         case "exposing":
             rules.exposing.add(function)
-        case "topics":
+        case "topics" | "subscriptions":
             rules.topics[function] = Argument(row["name"], row.get("keyword"))
+            if "type" in row:
+                rules.types[function] = Argument(row["type"], row.get("type_keyword"))
+            if name == "subscriptions":
+                rules.subscriptions[function] = Argument(
+                    row["callback"], row.get("callback_keyword")
+                )
         case "makes":
             rules.makes[function] = row["class"]
         case "configs":

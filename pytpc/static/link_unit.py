@@ -101,6 +101,21 @@ class PathStep:
 
 
 @dataclass(frozen=True, slots=True)
+class Received:
+    """A subscription whose messages a comparison depends on.
+
+    ``topic`` and ``type`` are None where no constant names them. ``by`` is ``value`` if the
+    compared value depends on the messages, ``control`` if only that it is evaluated does.
+    """
+
+    topic: str | None
+    type: str | None
+    by: Literal["value", "control"]
+    file: str
+    lineno: int
+
+
+@dataclass(frozen=True, slots=True)
 class LeftOut:
     """A link unit that was not analysed, and so reports nothing; and the reason."""
 
@@ -184,6 +199,8 @@ class Comparison:
     operand: str | None = None
     loop_depth: int | None = None
     processes: tuple[str, ...] | None = None
+    message: str | None = None
+    received: tuple[Received, ...] | None = None
 
     def to_json(self) -> dict[str, Any]:
         """The comparison as JSON (docs/reference/formats.md#a-comparison)."""
@@ -328,13 +345,16 @@ def _comparison(data: dict[str, Any]) -> Comparison:
     found["path"] = tuple(PathStep(**step) for step in found.get("path", ()))
     if "processes" in found:
         found["processes"] = tuple(found["processes"])
+    if "received" in found:
+        found["received"] = tuple(Received(**each) for each in found["received"])
     return Comparison(**found)
 
 
 # Fields that only one half of TPC writes, or only one kind of transform has.
 _OPTIONAL = frozenset(
     {"analysis", "end_lineno", "end_column", "key", "operand", "script", "build_folder"}
-    | {"incomplete", "loop_depth", "processes", "scale", "offset", "tree", "unit"}
+    | {"incomplete", "loop_depth", "message", "processes", "received"}
+    | {"scale", "offset", "tree", "unit"}
 )
 
 

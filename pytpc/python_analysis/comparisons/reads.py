@@ -61,7 +61,7 @@ def find_reads(flow: Flow, constants: Constants, rules: Rules) -> list[Read]:
             if path in rules.configs:
                 row = rules.configs[path]
                 namespace = _namespace(argument(given, row.namespace), row, constants)
-                params = _handed(flow, argument(given, row.callback), row.config)
+                params = handed(flow, argument(given, row.callback), row.config)
                 found += [
                     Read("", path, param, is_table=True, namespace=namespace) for param in params
                 ]
@@ -100,7 +100,7 @@ def _read(flow: Flow, instr: Instr, path: str, constants: Constants) -> list[Rea
     for name, value, stacks in _named(instr, row, given, constants):
         starts = [instr]
         if row.callback != Argument(None):
-            starts = list(_handed(flow, argument(given, row.callback), 0))
+            starts = list(handed(flow, argument(given, row.callback), 0))
         kind = type(value).__name__ if value is not None else ""
         for start in starts:
             read = Read(name, path, start, value, type=_TYPES.get(kind, kind), stacks=stacks)
@@ -163,7 +163,7 @@ def _default(constants: Constants, instr: Instr | None) -> Default:
     return value if finite else None
 
 
-def _handed(flow: Flow, callback: Instr | None, place: int) -> Iterator[Instr]:
+def handed(flow: Flow, callback: Instr | None, place: int) -> Iterator[Instr]:
     """The parameter of a callback that gets the argument number ``place``."""
     for each in flow.points.of(callback) if callback is not None else ():
         params = each.function.param_instrs if each.function is not None else []
@@ -182,7 +182,7 @@ def _listed(
     if asked is not None:
         above = lists.text(argument(given, row.namespace))
         starts = [(instr, [f"{above}.{name}" if above else name for name in lists.named(asked)])]
-    starts += [(each, []) for each in _handed(flow, argument(given, row.callback), 0)]
+    starts += [(each, []) for each in handed(flow, argument(given, row.callback), 0)]
     for start, names in starts:
         for name, value in lists.taken(start, names):
             yield Read(name, path, value)
@@ -225,7 +225,7 @@ def _answers(
     """What the handler of a service returns."""
     given = CallTable.arguments(instr)
     callbacks = [argument(given, row) for row in rules.services[path]]
-    topic = _topic_of(instr, path, constants, rules)
+    topic = topic_of(instr, path, constants, rules)
     return [
         Exposed(inner, path, topic)
         for callback in callbacks
@@ -255,13 +255,14 @@ def _topic(owner: Obj | None, constants: Constants, rules: Rules) -> str | None:
     if owner is None or owner.site is None:
         return None
     for path, _ in constants.flow.points.calls.outside.get(owner.site, ()):
-        topic = _topic_of(owner.site, path, constants, rules)
+        topic = topic_of(owner.site, path, constants, rules)
         if topic is not None:
             return topic
     return None
 
 
-def _topic_of(instr: Instr, path: str, constants: Constants, rules: Rules) -> str | None:
+def topic_of(instr: Instr, path: str, constants: Constants, rules: Rules) -> str | None:
+    """The topic or service that the call ``instr`` of ``path`` is given; None if not constant."""
     names = [each for each in (path, rules.class_of(path)) if each in rules.topics]
     name = argument(CallTable.arguments(instr), rules.topics[names[0]]) if names else None
     values = constants.names(name) if name is not None else []

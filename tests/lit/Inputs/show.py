@@ -1,4 +1,4 @@
-"""Static information in lines that a test can match: `show.py paths|spots|not-exposed FILE`."""
+"""Static information in lines that a test can match: `show.py paths|spots|not-exposed|messages FILE`."""
 
 import json
 import sys
@@ -12,6 +12,12 @@ if what == "paths":
         for number, step in enumerate(found["path"], start=1):
             place = f"{step['lineno']} {step['function']}"
             print(f"{found['source']} {number}: {step['step']} {place}: {step['what']}")
+elif what == "messages":
+    for found in unit["comparisons"]:
+        line = f"{found['source']}: {found['topic']} {found.get('message')}"
+        for one in found.get("received", ()):
+            line += f" <- {one['topic']} {one['type']} {one['by']}"
+        print(line)
 elif what == "spots":
     print(f"{unit['counts']['blind_spots']} blind spots, {len(unit['blind_spots'])} listed")
     for spot in unit["blind_spots"]:

@@ -307,6 +307,15 @@ public:
                                                  const QoS &) {
     return std::make_shared<Publisher<M>>();
   }
+  template <typename M, typename F>
+  void create_subscription(const std::string &Topic, const QoS &,
+                           F &&Callback) {
+    keepCallback(Topic, std::function<void(std::shared_ptr<M>)>(
+                            std::forward<F>(Callback)));
+  }
+  template <typename M>
+  void keepCallback(const std::string &Topic,
+                    std::function<void(std::shared_ptr<M>)>);
   std::shared_ptr<GenericPublisher>
   create_generic_publisher(const std::string &Topic, const std::string &Type,
                            const QoS &);
