@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import click
@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from pytpc.base.wording import many, plain
-from pytpc.cli.arguments import JSON
+from pytpc.cli.arguments import JSON, PATH, as_object
 from pytpc.cli.console import console, print_json, warn_of_failed
 from pytpc.cli.long_table import print_table
 from pytpc.cli.sources import SOURCES, SOURCES_AND_QUESTION, static_of
@@ -27,9 +27,12 @@ from pytpc.static.explanations import (
     why_no_comparison,
 )
 from pytpc.static.link_unit import LinkUnit, PathStep
+from pytpc.static.message_paths import MessagePaths, path_json, path_text, routes
 from pytpc.static.parameters import parameter_name
 from pytpc.static.static_info import StaticInfo
+from pytpc.static.wiring import UNKNOWN, Wiring
 
+_MOST_WAYS = 20
 _KINDS = {
     "lost_value": "value lost",
     "lost_outcome": "outcome lost",
@@ -43,29 +46,75 @@ _KINDS = {
 }
 
 
+@dataclass(frozen=True)
+class _ExplainArguments:
+    sources: tuple[Path, ...]
+    question: str
+    show_all: bool
+    launch: Path | None
+    mission: Path | None
+    as_json: bool
+
+    def __post_init__(self) -> None:
+        if self.launch is not None and self.mission is not None:
+            raise click.UsageError("give --launch or --mission, not both")
+
+
+def _wiring(given: _ExplainArguments) -> Wiring:
+    """What is known of the nodes."""
+    if given.launch is None and given.mission is None:
+        return UNKNOWN
+    # Their import takes longer than that of the commands that need no recording.
+    from pytpc.api.missions import read_named  # noqa: PLC0415
+    from pytpc.api.wired_robot import wiring_of_launch, wiring_of_mission  # noqa: PLC0415
+
+    if given.mission is not None:
+        return wiring_of_mission(read_named(given.mission), given.mission)
+    assert given.launch is not None
+    return wiring_of_launch(given.launch, given.sources)
+
+
 @click.command("explain")
 @SOURCES_AND_QUESTION
 @click.option("--all", "show_all", is_flag=True, help="Show the path of every matching comparison.")
+@click.option(
+    "--launch",
+    type=PATH,
+    metavar="FILE",
+    help="Launch file that starts the nodes and names their topics.",
+)
+@click.option(
+    "--mission",
+    type=PATH,
+    metavar="MISSION",
+    help="Recorded mission whose nodes and topics count, in place of --launch.",
+)
 @JSON
-def explain_command(
-    sources: tuple[Path, ...], question: str, show_all: bool, as_json: bool
-) -> None:
+@as_object(_ExplainArguments)
+def explain_command(given: _ExplainArguments) -> None:
     """Show the path from where a parameter is read, through the comparison, to what is exposed.
 
     Where the path enters another library of the process, the library is named.
+
+    If other nodes compare something that depends on the messages which it decides, "goes on to"
+    shows the paths over the nodes. Without --launch or --mission, each link unit counts as one
+    node, and topics have the names that the code gives them.
 
     SOURCE is a static.json, a build base or a workspace; without it, this folder is used. Without
     --all, the path is shown for the comparison nearest to an exposing statement; the others get one
     line each.
     """
-    explanation = look_up(static_of(sources), question)
-    if as_json:
-        print_json(_json(explanation))
+    static = static_of(given.sources)
+    explanation = look_up(static, given.question)
+    paths = MessagePaths(static, _wiring(given))
+    if given.as_json:
+        print_json(_json(explanation, paths))
         return
     out = console()
-    shown = explanation.comparisons if show_all else explanation.comparisons[:1]
+    shown = explanation.comparisons if given.show_all else explanation.comparisons[:1]
     for found in shown:
         _print_way(out, found)
+        _print_goes_on(out, paths, found)
     rest = explanation.comparisons[len(shown) :]
     if rest:
         out.print(Text(f"{many(len(rest), 'more comparison')} (use --all to show their paths):"))
@@ -189,6 +238,21 @@ def _print_way(console: Console, found: FoundComparison) -> None:
     console.print(Padding(table, (0, 0, 1, 2), expand=False), highlight=False)
 
 
+def _print_goes_on(console: Console, paths: MessagePaths, found: FoundComparison) -> None:
+    """The paths over nodes, the shortest first: one for each row of topics and nodes."""
+    ways = routes(paths.from_key(found.comparison.key))
+    if not ways:
+        return
+    console.print(Padding(Text("goes on to", style="bold"), (0, 0, 0, 2), expand=False))
+    for way, others in ways[:_MOST_WAYS]:
+        line = Text(plain(path_text(paths.static, way, others)))
+        console.print(Padding(line, (0, 0, 0, 4), expand=False), highlight=False)
+    if len(ways) > _MOST_WAYS:
+        more = Text(f"and {many(len(ways) - _MOST_WAYS, 'more path')}; --json has all", style="dim")
+        console.print(Padding(more, (0, 0, 0, 4), expand=False))
+    console.print()
+
+
 def _found_in(found: FoundComparison) -> list[str]:
     """Which link unit does what, and the processes."""
     lines = [across(found.comparison.path)]
@@ -223,7 +287,7 @@ def print_why_not(console: Console, explanation: Explanation) -> None:
         console.print(Padding(Text(plain(reason)), (0, 0, 0, 2), expand=False))
 
 
-def _json(explanation: Explanation) -> dict[str, object]:
+def _json(explanation: Explanation, paths: MessagePaths) -> dict[str, object]:
     def with_unit(unit: LinkUnit, fields: dict[str, object]) -> dict[str, object]:
         return {"package": unit.package, "link_unit": unit.link_unit, **fields}
 
@@ -235,6 +299,10 @@ def _json(explanation: Explanation) -> dict[str, object]:
                 {
                     **asdict(each.comparison),
                     "path": [step.to_json() for step in each.comparison.path],
+                    "goes_on": [
+                        path_json(paths.static, path)
+                        for path in paths.from_key(each.comparison.key)
+                    ],
                 },
             )
             for each in explanation.comparisons

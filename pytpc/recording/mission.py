@@ -23,6 +23,7 @@ from pytpc.recording.events import Events
 from pytpc.recording.marks import MARK_TYPES, Mark, with_short_note
 from pytpc.recording.parameter_values import SetValue
 from pytpc.recording.summaries import Summaries
+from pytpc.static.wiring import Wiring
 
 EVENTS_FILE = "events.parquet"
 SUMMARIES_FILE = "summaries.parquet"
@@ -94,6 +95,7 @@ class Recording:
     about what was read and what was left out. ``dropped`` is what the processes themselves counted,
     and ``names`` the full names of parameters that they reported, sorted. ``values`` are those of
     parameters over time, where they were recorded (ROS 2); ``ParameterValues`` looks them up.
+    ``wiring`` are the nodes and their topics; None if nobody has looked for them.
     """
 
     name: str
@@ -109,6 +111,7 @@ class Recording:
     dropped: tuple[Dropped, ...] = ()
     names: tuple[ReadName, ...] = ()
     values: tuple[SetValue, ...] = ()
+    wiring: Wiring | None = None
 
     @cached_property
     def nodes_of(self) -> Mapping[str, frozenset[str]]:

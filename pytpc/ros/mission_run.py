@@ -2,8 +2,8 @@
 
 A recorded mission's folder has ``mission.bag``, ``params.yaml`` (the parameters at the end;
 ``params_start.yaml`` right after the launch), ``origins.json`` (where these values came from),
-``run.json`` (how it went), ``static.json`` (the static information of the build that ran) and
-``tpc/`` (the files of nodes with the sink ``file``).
+``graph.json`` (who spoke to whom), ``run.json`` (how it went), ``static.json`` (the static
+information of the build that ran) and ``tpc/`` (the files of nodes with the sink ``file``).
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from pytpc.base.errors import RunError
 from pytpc.base.paths import MERGED_FILE
 from pytpc.base.source_bytes import read_bytes, sha256_of
 from pytpc.ingest.file_counts import NO_FILES, FileCounts
+from pytpc.recording.graph_file import GRAPH_FILE
 from pytpc.recording.marks import topic_of_marks
 from pytpc.recording.marks_home import set_marks_aside
 from pytpc.recording.mission import (
@@ -288,6 +289,7 @@ def clear_earlier(out_dir: Path) -> list[Path]:
         PARAMS_FILE,
         START_FILE,
         ORIGINS_FILE,
+        GRAPH_FILE,
         RUN_FILE,
         EVENTS_FILE,
         SUMMARIES_FILE,

@@ -24,6 +24,7 @@ from pytpc.values.trace import (
     Trace,
     TracerError,
     interpreter_of,
+    pairs,
     run_tracer,
     trace_launch,
 )
@@ -130,6 +131,7 @@ def _launch_node(node: Fields) -> LaunchNode:
         int(place.get("lineno", 0)),
         0,
         container=node.get("container", ""),
+        remaps=pairs(node.get("remaps", ())),
     )
 
 

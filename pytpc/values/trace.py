@@ -10,7 +10,7 @@ import json
 import re
 import shutil
 import subprocess
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -33,12 +33,18 @@ class PackageNotFoundError(InputError):
     """A launch file needs a package that is not in the environment in which it is read."""
 
 
+def pairs(found: Iterable[Sequence[str]]) -> tuple[tuple[str, str], ...]:
+    """Pairs of names that were lists in JSON."""
+    return tuple((str(before), str(after)) for before, after in found)
+
+
 @dataclass(frozen=True, slots=True)
 class LaunchNode:
     """A ``<node>`` that would be started: its full name, package, program and tag.
 
     ``args`` are its arguments under ROS 1. Of a component, ``program`` is its class, and
-    ``container`` the full name of the node that loads it.
+    ``container`` the full name of the node that loads it. ``remaps`` are pairs of names as they are
+    written: what the code calls a topic or service, and its new name.
     """
 
     name: str
@@ -49,11 +55,13 @@ class LaunchNode:
     offset: int
     args: str = ""
     container: str = ""
+    remaps: tuple[tuple[str, str], ...] = ()
 
     @classmethod
     def of(cls, fields: Mapping[str, Any]) -> LaunchNode:
         """The node with these fields, as in JSON."""
-        return cls(**{**fields, "path": Path(fields["path"])})
+        remaps = pairs(fields.get("remaps", ()))
+        return cls(**{**fields, "path": Path(fields["path"]), "remaps": remaps})
 
     def to_json(self) -> dict[str, object]:
         """The fields; ``of`` reads them."""

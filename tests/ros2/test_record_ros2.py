@@ -10,6 +10,7 @@ from pathlib import Path
 
 from patience import PATIENCE_S
 from pytpc.ingest.reading import read
+from pytpc.recording.graph_file import read_graph
 from pytpc.recording.parameter_values import ParameterValues
 from pytpc.static.static_info import StaticInfo
 from ros2_commands import (
@@ -110,6 +111,8 @@ def test_the_value_at_a_time_is_that_of_before_or_after_it_was_set(
     start = (tmp_path / "mission/params_start.yaml").read_text()
     assert ("limits.speed: 6.5" in start, "limits.speed: 4.0" in start) == (True, False)
     assert "limits.speed: 4.0" in (tmp_path / "mission/params.yaml").read_text()
+    topic = read_graph(tmp_path / "mission")["/threshold_information"]
+    assert (topic.type, topic.publishers) == ("std_msgs/msg/String", {"/robot1/guard"})
 
 
 def test_marks_of_two_observers_are_ranked_by(env: dict[str, str], tmp_path: Path) -> None:

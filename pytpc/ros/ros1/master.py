@@ -20,6 +20,7 @@ from xmlrpc.server import SimpleXMLRPCRequestHandler, SimpleXMLRPCServer
 from pytpc.base.errors import RunError
 from pytpc.ros.ros1.connection import TimedSocket
 from pytpc.ros.ros1.listening import PeerServer, bind_address
+from pytpc.static.wiring import GraphTopic
 
 DEFAULT_URI = "http://localhost:11311"
 # A number over 32 bits is an OverflowError, a URI of another scheme a plain OSError.
@@ -28,6 +29,7 @@ _PATIENCE_S = 5.0
 _LARGEST_ANSWER = 1 << 24
 # How long the end of this program waits for the master to take note of it.
 _LEAVE_S = 0.5
+_PAIR = 2
 
 Names = dict[str, list[str]]
 
@@ -170,6 +172,28 @@ class Master:
         """
         answer = self.call("getSystemState")
         return SystemState(*(_names(answer, part) for part in range(3)))
+
+    def topics(self) -> dict[str, GraphTopic]:
+        """All topics with their types and nodes.
+
+        Raises:
+            RunError: the master does not answer.
+        """
+        state = self.state()
+        known = self.call("getTopicTypes")
+        kinds = {
+            str(pair[0]): str(pair[1])
+            for pair in (known if isinstance(known, list) else ())
+            if isinstance(pair, list) and len(pair) == _PAIR and pair[1] != "*"
+        }
+        return {
+            name: GraphTopic(
+                kinds.get(name),
+                frozenset(state.publishers.get(name, ())),
+                frozenset(state.subscribers.get(name, ())),
+            )
+            for name in {*state.publishers, *state.subscribers}
+        }
 
     def node_uri(self, node: str) -> str | None:
         """Where a node's slave API is; None where the master does not know the node.

@@ -17,11 +17,12 @@ from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
-from pytpc.base.errors import MissingToolError, RunError
+from pytpc.base.errors import MissingToolError, RunError, TpcError
 from pytpc.base.paths import project_root
 from pytpc.base.signals import Stop
 from pytpc.base.wording import listed
 from pytpc.ingest.file_counts import FileCounter
+from pytpc.recording.graph_file import GRAPH_FILE, write_graph
 from pytpc.recording.mission import REPORTS_FOLDER
 from pytpc.ros.folder_lock import alone_in
 from pytpc.ros.mission_run import (
@@ -154,6 +155,7 @@ def run_mission(
                 if not stop.is_set():
                     failure, flight.ended = error, "failed"
             _dump_at_end(graph.env, out_dir / PARAMS_FILE, stop)
+            _keep_graph(graph.uri, out_dir)
             flight.stop()
             graph.stop(recording)
         status = read_status(status_file(out_dir))
@@ -224,6 +226,12 @@ def _dump_at_end(env: Mapping[str, str], path: Path, stop: Stop | None) -> None:
         dump_params(env, path)
     else:
         try_dump(env, path, lambda: stop.in_a_hurry)
+
+
+def _keep_graph(uri: str, out_dir: Path) -> None:
+    """Write who publishes and subscribes to what; without it only less is known of the messages."""
+    with contextlib.suppress(TpcError):
+        write_graph(Master(uri, f"{NODE_NAME}_{os.getpid()}").topics(), out_dir / GRAPH_FILE)
 
 
 def _saved(
@@ -367,6 +375,7 @@ def _record_graph(
     status = recorder.finish()
     trace, reason = beginning.ended(hurry)
     try_dump(env, out_dir / PARAMS_FILE, hurry)
+    _keep_graph(uri, out_dir)
     run = MissionRun.of(status, out_dir, ended, time.monotonic() - began)
     return _saved(run, options, trace, reason, launch_env)
 

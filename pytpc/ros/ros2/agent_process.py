@@ -22,6 +22,7 @@ from pytpc.ros.ros2 import interpreter
 from pytpc.ros.ros2.address import Ros2Address
 from pytpc.ros.ros2.discovery import Discovery
 from pytpc.ros.source import Source
+from pytpc.static.wiring import GraphTopic
 
 AT_A_TIME = 16
 """How many nodes are asked at a time: one that hangs holds up few others."""
@@ -225,6 +226,20 @@ class Agent:
         if "error" in answer.head:
             raise RunError(str(answer.head["error"]))
         return answer.head, answer.body
+
+    def connections(self) -> dict[str, GraphTopic]:
+        """All topics of the graph with their nodes, without the agent.
+
+        Raises:
+            RunError: the agent has ended.
+        """
+        found: dict[str, Head] = self.ask({"op": "connections"})[0]["topics"]
+        return {
+            topic: GraphTopic(
+                one["type"], frozenset(one["publishers"]), frozenset(one["subscribers"])
+            )
+            for topic, one in found.items()
+        }
 
     def drain(self) -> None:
         """Have all messages that have come to this machine be in ``poll``.

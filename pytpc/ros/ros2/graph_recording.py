@@ -14,7 +14,7 @@ from typing import NamedTuple
 import yaml
 
 from pytpc.base.atomic import write_atomic
-from pytpc.base.errors import MissingToolError, RunError
+from pytpc.base.errors import MissingToolError, RunError, TpcError
 from pytpc.base.signals import Stop
 from pytpc.base.wording import many
 from pytpc.ingest.decoders import ROS2
@@ -22,6 +22,7 @@ from pytpc.ingest.file_counts import NO_FILES, FileCounts
 from pytpc.ingest.messages import REPORTS, ROSOUT
 from pytpc.ingest.parameter_events import TOPIC, TYPE, decode_parameter_event
 from pytpc.ingest.ros2 import decode_log
+from pytpc.recording.graph_file import GRAPH_FILE, write_graph
 from pytpc.recording.marks import MarkMessages
 from pytpc.recording.parameter_values import ParameterValues, SetValue
 from pytpc.ros.folder_lock import alone_in
@@ -116,6 +117,7 @@ def record_ros2_graph(
                 options.on_graph(str(agent.address), "")
             launched.start()
             ended = recording.run(stop, began)
+            recording.keep_graph()
         finally:
             # What was recorded until then is a whole file, unless that cannot be written.
             status, fault = recording.finish(_hurries(stop))
@@ -283,6 +285,14 @@ class GraphRecording:
             self._file.close()
         self._save_values()
         return self._status(closed=True), fault
+
+    def keep_graph(self) -> None:
+        """Write who publishes and subscribes to what, while the nodes still run.
+
+        Without it only less is known of the messages.
+        """
+        with contextlib.suppress(TpcError):
+            write_graph(self._agent.connections(), self._options.out_dir / GRAPH_FILE)
 
     def wait_for_values(self, hurries: Callable[[], bool] = lambda: False) -> None:
         """Wait for the values of nodes that have only just been found, unless one ``hurries``."""

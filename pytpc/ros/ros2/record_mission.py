@@ -98,6 +98,7 @@ def run_ros2_mission(
                 ended = recording.run(stop, began, watch.look)
                 # A node that is ended does not tell its parameters any more.
                 recording.wait_for_values(lambda: stop.in_a_hurry)
+                recording.keep_graph()
         except RunError as error:
             failure = error
         finally:

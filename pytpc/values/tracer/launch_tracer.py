@@ -204,6 +204,7 @@ class _Tracer(XmlLoader):  # type: ignore[misc]
             place = {"path": here["file"], "lineno": here["lineno"], "offset": here["offset"]}
             what = {"name": full, "package": node.package, "program": node.type}
             what["args"] = node.args or ""
+            what["remaps"] = [[str(before), str(after)] for before, after in node.remap_args or ()]
             self.nodes.append({**what, **place})
             if not node.machine_name:
                 self.programs[node.package, node.type] = None

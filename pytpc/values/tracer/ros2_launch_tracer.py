@@ -218,6 +218,7 @@ class Tracer:
             step.setdefault("place", self._value_place(action, "args", "ros_arguments", -1))
             self._read_file(step)
         self._add(action, self._name_of(action, names), steps)
+        self.nodes[-1]["remaps"] = _remaps(words)
 
     def _name_of(self, action: Given, names: dict[str, str]) -> tuple[str, bool]:
         if isinstance(action, launch_ros.actions.Node) and "node" not in names:
@@ -340,6 +341,10 @@ class Tracer:
         plugin = self._text(description.node_plugin).rpartition("::")[2]
         self._add(description, (f"{namespace}/{name or plugin}", bool(name)), steps)
         self.nodes[-1]["container"] = container
+        self.nodes[-1]["remaps"] = [
+            [self._text(before), self._text(after)]
+            for before, after in description.remappings or ()
+        ]
 
 
 def _ros_arguments(words: list[str]) -> tuple[list[dict[str, Given]], dict[str, str]]:
@@ -363,6 +368,17 @@ def _ros_arguments(words: list[str]) -> tuple[list[dict[str, Given]], dict[str, 
             elif assigned and what == "__ns":
                 names.setdefault("ns", name)
     return steps, names
+
+
+def _remaps(words: list[str]) -> list[list[str]]:
+    """The new names of topics and services on a command line, in pairs."""
+    found = []
+    for word, following in zip(words, [*words[1:], ""]):
+        before, assigned, after = following.partition(":=")
+        # Names with two underscores are those of the node itself.
+        if word in ("-r", "--remap") and assigned and not before.startswith("__"):
+            found.append([before, after])
+    return found
 
 
 def _of_handler(handler: Given) -> list[Any]:

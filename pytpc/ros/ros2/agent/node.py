@@ -118,6 +118,23 @@ class Agent:
         self._wait_for_receivers()
         self._writer.put({"ev": "answer", "id": head["id"]})
 
+    def do_connections(self, head: Any, body: Any) -> None:
+        """Answer with all topics: their types, and the nodes that publish and subscribe to them."""
+        own = self.node.get_fully_qualified_name()
+
+        def names(ends: Any) -> Any:
+            found = {end.node_namespace.rstrip("/") + "/" + end.node_name for end in ends}
+            return sorted(name for name in found if name != own and "_UNKNOWN_" not in name)
+
+        topics = {}
+        for topic, kinds in self.node.get_topic_names_and_types():
+            topics[topic] = {
+                "type": kinds[0] if len(kinds) == 1 else None,
+                "publishers": names(self.node.get_publishers_info_by_topic(topic)),
+                "subscribers": names(self.node.get_subscriptions_info_by_topic(topic)),
+            }
+        self._writer.put({"ev": "answer", "id": head["id"], "topics": topics})
+
     def do_advertise(self, head: Any, body: Any) -> None:
         """Become a publisher of a topic."""
         if head["topic"] not in self._publishers:
