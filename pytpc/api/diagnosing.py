@@ -19,6 +19,7 @@ from pytpc.api.missions import (
     read_marked,
     with_names_of,
 )
+from pytpc.api.wired_robot import with_wiring
 from pytpc.base.closest import did_you_mean
 from pytpc.base.errors import InputError
 from pytpc.base.wording import listed, plain
@@ -138,6 +139,7 @@ class Rankings(TableSequence[MarkRanking]):
         """Rank the parameters at each mark of a recording that was read before."""
         named = with_names_of(recording, static_info, source)
         question = about_mission(question, static_info, named)
+        recording = with_wiring(recording, source)
         found = rank_marks(recording, named, question)
         return cls(tuple(found), recording, named, source, question)
 
@@ -260,7 +262,9 @@ class AskedMission:
         named = with_names_of(run.recording, static_info, run.source)
         if question.declared is None:
             question = replace(question, declared=find_declared(named, run.source))
-        return cls(run, named, beside(question, good, run, static_info, named))
+        asked = beside(question, good, run, static_info, named)
+        wired = replace(run, recording=with_wiring(run.recording, run.source))
+        return cls(wired, named, asked)
 
     @cached_property
     def diagnosis(self) -> Diagnosis:

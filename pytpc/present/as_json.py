@@ -208,6 +208,7 @@ def _blamed(found: BlamedAdvice) -> Json:
         "source_code": accused.comparison.source_code,
         "topic": accused.comparison.topic,
         "node": accused.last.node,
+        "followed": [asdict(one) for one in accused.followed],
         "remedy": {**remedy_json(found.remedy), "what_if": tried},
     }
 

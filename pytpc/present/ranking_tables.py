@@ -91,11 +91,18 @@ def print_diagnosis(console: Console, found: Diagnosis) -> None:
     if found.shown:
         rows = [_blamed_cells(one) for one in found.shown]
         parts.append(_indented(_listing(console, _BLAMED, rows)))
+    parts += [_indented(line) for one in found.shown for line in _followed(one)]
     if found.folded_text:
         parts.append(_indented(Text(found.folded_text, style="dim")))
     if found.shown:
         parts.append(_indented(Text(_TERMS, style="dim")))
     console.print(Padding(Group(*parts), (0, 0, 1, 0), expand=False), highlight=False)
+
+
+def _followed(one: BlamedAdvice) -> list[Text]:
+    """What other nodes did after the comparison of a suspect turned; one path is enough here."""
+    name = one.accused.parameter
+    return [Text(plain(f"{name} {each.sentence}")) for each in one.accused.followed[:1]]
 
 
 def _verdict(found: Diagnosis) -> RenderableType:
@@ -254,6 +261,7 @@ def _suggested(found: Diagnosis, one: BlamedAdvice) -> RenderableType:
     lines.append(_place_line(accused.comparison))
     if one.what_if is not None:
         lines.append(Text(plain(f"   {one.what_if.text}")))
+    lines += [Text(plain(f"   it {each.sentence}")) for each in accused.followed]
     smallest = tried.smallest
     if smallest is not None and smallest.value not in {None, tried.value}:
         lines.append(Text(plain(f"   the smallest change: {smallest.text}")))

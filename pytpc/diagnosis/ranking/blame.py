@@ -12,8 +12,10 @@ from dataclasses import replace
 from pytpc.base.wording import many
 from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.ranking.mark_ranking import outside
+from pytpc.diagnosis.ranking.other_nodes import OtherNodes
 from pytpc.diagnosis.ranking.other_values import diagnose_beside
 from pytpc.diagnosis.ranking.posterior import Decisive, Posterior
+from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.ranking.summarised import with_summarised
 from pytpc.diagnosis.results.suspects import Accused, Blame, Evaluation
 from pytpc.diagnosis.scores.evaluations import KeyRows, LoggedEvaluations
@@ -54,7 +56,12 @@ def blame(recording: Recording, static_info: StaticInfo, question: Question = PL
         changes=question.changes,
         differences=question.differences,
     )
+    streams = ResultStreams.of(with_summarised(recording), tpcs)
+    others = OtherNodes.of(streams, tpcs, static_info, recording.wiring)
     suspects = _suspects(found, static_info, recording.marks, events)
+    if others is not None:
+        last_ns = max(mark.time_ns for mark in recording.marks)
+        suspects = _with_followed(suspects, others, (last_ns - streams.begin_ns) / 1e9)
     code = None if question.differences is None else question.differences.code
     made = Blame(suspects, found.none, len(tpcs.names), recording.marks, notes, code)
     if len(recording.marks) > 1 or made.accused is not None:
@@ -88,6 +95,14 @@ def _suspects(
             )
         )
     return tuple(suspects)
+
+
+def _with_followed(
+    suspects: tuple[Accused, ...], others: OtherNodes, until_s: float
+) -> tuple[Accused, ...]:
+    return tuple(
+        replace(one, followed=others.followed(one.key, one.last.node, until_s)) for one in suspects
+    )
 
 
 def _last(events: Events, by: Decisive, time_ns: int) -> Evaluation:

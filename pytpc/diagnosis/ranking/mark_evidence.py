@@ -33,6 +33,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pytpc.base.columns import Bools, Floats, Int64s
+from pytpc.diagnosis.ranking.other_nodes import Reached, effects
 from pytpc.diagnosis.ranking.result_streams import CASCADE_S, ResultStream, ResultStreams
 
 REACTION_LOG = 1.946
@@ -79,7 +80,8 @@ LATER = 0.4
 """Weight of a change that follows another one within ``CASCADE_S``."""
 
 EFFECT_S = 1.2
-"""What the robot starts or stops within this time after a change may be its effect."""
+"""What the robot starts or stops within this time after a change may be its effect. So may turns
+in other nodes that its messages reach (`other_nodes`)."""
 
 IDLE = 0.3
 """Weight of a change after which the robot goes on as before; very many effects add 1."""
@@ -127,11 +129,25 @@ def marked(times_ns: Int64s, observers: Sequence[str], streams: ResultStreams) -
     return Marked(times, np.sort(np.array([*firsts.values()], np.float64)))
 
 
-def mark_evidence(streams: ResultStreams, marks: Marked) -> MarkEvidence:
-    """The evidence of all streams; there is at least one mark."""
+def mark_evidence(
+    streams: ResultStreams,
+    marks: Marked,
+    reached: Sequence[Sequence[Reached]] | None = None,
+) -> MarkEvidence:
+    """The evidence of all streams; there is at least one mark.
+
+    Args:
+        streams: of the log.
+        marks: of the mission.
+        reached: for each stream, those of other nodes that its messages reach; None: not known.
+    """
     wait = Wait.before(marks, streams.seconds)
     chance = any_time(streams.seconds, marks)
-    rows = [(_acted(s, streams, marks) - chance, *_waited(s, wait, marks)) for s in streams.streams]
+    others = reached or [()] * len(streams.streams)
+    rows = [
+        (_acted(s, streams, marks, known) - chance, *_waited(s, wait, marks))
+        for s, known in zip(streams.streams, others, strict=True)
+    ]
     return MarkEvidence(*np.array(rows, np.float64).reshape(len(rows), len(fields(MarkEvidence))).T)
 
 
@@ -148,7 +164,9 @@ def reaction(delays: Floats, mean: float = REACTION_LOG, sigma: float = REACTION
     return density
 
 
-def _acted(stream: ResultStream, streams: ResultStreams, marks: Marked) -> float:
+def _acted(
+    stream: ResultStream, streams: ResultStreams, marks: Marked, reached: Sequence[Reached]
+) -> float:
     last = float(marks.firsts.max(initial=0.0))
     turns = np.concatenate([stream.changes, stream.starts])
     once = stream.stops - stream.starts <= ONCE_S
@@ -160,7 +178,7 @@ def _acted(stream: ResultStream, streams: ResultStreams, marks: Marked) -> float
     follows = _between(streams.shifts, turns, turns + EFFECT_S) - _between(
         streams.shifts, turns - EFFECT_S, turns
     )
-    follows = np.maximum(0, follows)
+    follows = np.maximum(0, follows + effects(turns, reached))
     prior = prior * np.where(first, 1.0, LATER) * (IDLE + follows / (follows + HALF))
     return caused(turns, prior, streams.seconds, marks)
 

@@ -26,6 +26,7 @@ import numpy as np
 
 from pytpc.base.columns import Floats, Int64s
 from pytpc.diagnosis.ranking.mark_evidence import SHARE, MarkEvidence, mark_evidence, marked
+from pytpc.diagnosis.ranking.other_nodes import OtherNodes
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.ranking.summarised import with_summarised
 from pytpc.diagnosis.scores.score_tables import Tpcs, parameter_tables, tpc_scores
@@ -130,7 +131,8 @@ def diagnose_log(
         return Posterior(tpcs.names, nobody, np.zeros(len(tpcs.names)), 1.0, 0.5, nothing)
     times = np.array([mark.time_ns for mark in marks], np.int64)
     observed = marked(times, tuple(mark.observer for mark in marks), streams)
-    found = mark_evidence(streams, observed)
+    others = OtherNodes.of(streams, tpcs, static_info, recording.wiring)
+    found = mark_evidence(streams, observed, None if others is None else others.reached)
     places = np.array([stream.column for stream in streams.streams])
     said = Said(places, ranked(recording, tpcs, times), np.array([type_odds(marks)]))
     mixed = mixture(found, said, weights)

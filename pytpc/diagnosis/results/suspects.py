@@ -117,12 +117,30 @@ WORTH = 0.01
 
 
 @dataclass(frozen=True, slots=True)
+class Followed:
+    """Comparisons of other nodes that turned after a suspect's, as messages lead to them.
+
+    ``text`` is the path over the nodes. The suspect's comparison turned ``turned_s`` after the log
+    began, and the last one on the path ``after_s`` later.
+    """
+
+    text: str
+    turned_s: float
+    after_s: float
+
+    @property
+    def sentence(self) -> str:
+        """The evidence in one line."""
+        return f"turned at {self.turned_s:.1f} s, and {self.after_s:.1f} s later: {self.text}"
+
+
+@dataclass(frozen=True, slots=True)
 class Accused:
     """A parameter and the probability that it is to blame, by all marks of a mission.
 
     ``position`` counts from 1; ``tied`` parameters share one. ``type`` is the likelier type of
     error if it is this parameter. ``key`` and ``comparison`` decided, ``last`` is their last
-    evaluation up to the last mark.
+    evaluation up to the last mark. ``followed`` is what other nodes did after it turned.
     """
 
     position: int
@@ -133,6 +151,7 @@ class Accused:
     key: str
     comparison: Comparison
     last: Evaluation
+    followed: tuple[Followed, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -67,7 +67,8 @@ class LeadView:
 
     ``is_likeliest`` is False where "none of the parameters" is likelier. ``setting`` is where its
     value was set; None if that is not known, and ``unset`` says why. ``command`` writes the value
-    to try there; empty if no file can be changed, or nothing is to be tried.
+    to try there; empty if no file can be changed, or nothing is to be tried. ``followed`` says what
+    other nodes did after its comparison turned.
     """
 
     parameter: str
@@ -90,6 +91,7 @@ class LeadView:
     command: str
     link: str
     figure: FigureView
+    followed: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -199,6 +201,7 @@ def lead_view(
         command=_command(mission, setting, lead.advised) if to_try else "",
         link=ids[1],
         figure=figures.draw(accused, lead.mark, wanted, declared, ids[0]),
+        followed=tuple(one.sentence for one in lead.advised.accused.followed),
     )
 
 
