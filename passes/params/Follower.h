@@ -38,8 +38,7 @@ public:
         Writes(AM.getResult<VisibleWritesAnalysis>(M)),
         Reads(AM.getResult<ParamCallFinder>(M)),
         Rules(AM.getResult<RuleAnalysis>(M)),
-        Names(AM.getResult<LocationTypesAnalysis>(M)),
-        Texts(M, Pointers, Accesses, Writes, Rules),
+        Names(AM.getResult<LocationTypesAnalysis>(M)), Texts(M, AM),
         Configuration(Reads, Calls, Pointers, Writes) {}
 
   ParameterUsage run();

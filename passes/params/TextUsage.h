@@ -23,8 +23,7 @@ struct TextComparison {
 
 class TextUsage {
 public:
-  TextUsage(llvm::Module &M, PointsTo &Pointers, AccessIndex &Accesses,
-            const VisibleWrites &Writes, const RuleMatches &Rules);
+  TextUsage(llvm::Module &M, llvm::ModuleAnalysisManager &AM);
 
   struct Found {
     llvm::SmallVector<TextComparison, 4> Comparisons;
@@ -51,16 +50,33 @@ public:
   propertiesOf(const Locations &Elements) const;
 
 private:
+  /// A pointer that a call passes on, and the steps that the functions which it
+  /// enters take from there, the last one first.
+  struct Passed {
+    const llvm::Value *Pointer;
+    llvm::SmallVector<const llvm::GEPOperator *, 4> Steps = {};
+  };
+  /// The objects between which a text is copied, in one of the calls by which
+  /// the copy runs.
+  struct Copy {
+    Locations To, From;
+  };
   struct Use {
     llvm::CallBase *Call;
     const Rule *Row;
     llvm::SmallVector<Locations, 2> Operands; ///< of its first two
   };
+  bool addCopies(const llvm::Function &F, const Passed &To, const Passed &From,
+                 unsigned Depth, llvm::SmallVectorImpl<Copy> &Out);
+  Locations objectsAt(const Passed &P) const;
   /// True if copies of whole objects can bring one of \p From to one of \p To.
   bool anyReaches(const Locations &From, const Locations &To) const;
 
+  const CallGraphResult &Calls;
+  LocationTypes &Types;
   PointsTo &Pointers;
   AccessIndex &Accesses;
+  std::vector<Copy> Copies;
   std::vector<Use> Uses;
   std::vector<std::pair<llvm::CallBase *, Locations>> Numbers;
   std::vector<Property> Properties;
