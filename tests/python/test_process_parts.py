@@ -178,7 +178,7 @@ const char *text() { return "grid::Alias"; }
     (index / "nav__pluginlib__plugin/grid").write_text("layers.xml\n")
     (index / "rclcpp_components").mkdir()
     (index / "rclcpp_components/grid").write_text("grid::Wall;lib/liblayers.so\nGone;layers\n")
-    kinds = ("grid::Wall", "grid::Alias", "grid::Wal", "gird::Wall", "grid::Wall<int>")
+    kinds = ("grid::Wall", "grid::Alias", "grid::Wal", "gridd::Wall", "grid::Wall<int>")
     classes = "\n".join(
         f'<class type="{kind.replace("<", "&lt;")}" base_class_type="B"/>' for kind in kinds
     )
@@ -189,7 +189,7 @@ const char *text() { return "grid::Alias"; }
     end = "; correct its name, or build the library again"
     assert found.faults == (
         f"{tmp_path}/layers.xml:4: liblayers.so has no class grid::Wal{end}",
-        f"{tmp_path}/layers.xml:5: liblayers.so has no class gird::Wall{end}",
+        f"{tmp_path}/layers.xml:5: liblayers.so has no class gridd::Wall{end}",
         f"{index}/rclcpp_components/grid:2: liblayers.so has no class Gone{end}",
     )
 

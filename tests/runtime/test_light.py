@@ -48,7 +48,10 @@ def test_a_hot_site_is_sampled(drive, files):
     assert sums["flops"] == 0
     assert 128 <= sums["seen"] < 10_000
     assert all(s["about"] == 0 for s in file.all_summaries)
-    for summary in file.all_summaries:
+    # A thread that had to wait for the processor may have inspected none between two summaries.
+    inspected = [summary for summary in file.all_summaries if summary["seen"]]
+    assert inspected
+    for summary in inspected:
         assert (summary["diff_min"], summary["diff_max"]) == (-1, -1)
         assert summary["diff_sum"] == pytest.approx(-summary["count"])
         assert summary["far"] == summary["count"]
