@@ -182,7 +182,7 @@ AnalysedModule::AnalysedModule(Module &M, const Options &Opts,
                                std::shared_ptr<const Rules> All)
     : M(M), Opts(Opts), Tables(std::move(All)), Calls(*Tables),
       Plain(copyOf(M)) {
-  IsSeparated = Calls.beginIn(*Plain);
+  IsSeparated = Calls.inlineTransparentIn(*Plain);
   prepareCopy();
 }
 
@@ -209,7 +209,8 @@ void AnalysedModule::prepareCopy() {
 
 bool AnalysedModule::separate(std::vector<std::string> Names,
                               function_ref<void()> BeforeChange) {
-  std::vector<SeparatedFunction> Done = Calls.addIn(*Plain, std::move(Names));
+  std::vector<SeparatedFunction> Done =
+      Calls.separateIn(*Plain, std::move(Names));
   if (Done.empty())
     return false;
   IsSeparated = true;

@@ -170,13 +170,13 @@ static std::vector<SeparatedFunction> separateAll(Module &M,
   return Done;
 }
 
-bool Separation::beginIn(Module &M) const {
+bool Separation::inlineTransparentIn(Module &M) const {
   callByOwnName(M);
   return inlineTransparent(M, Tables);
 }
 
 std::vector<SeparatedFunction>
-Separation::addIn(Module &M, std::vector<std::string> Names) {
+Separation::separateIn(Module &M, std::vector<std::string> Names) {
   std::vector<SeparatedFunction> Done = separateAll(M, Names);
   if (!Done.empty())
     Rounds.push_back(std::move(Names));
@@ -184,7 +184,7 @@ Separation::addIn(Module &M, std::vector<std::string> Names) {
 }
 
 void Separation::applyTo(Module &M) const {
-  beginIn(M);
+  inlineTransparentIn(M);
   for (const std::vector<std::string> &Names : Rounds)
     separateAll(M, Names);
 }

@@ -82,11 +82,11 @@ public:
   /// \p Tables name the functions to inline.
   explicit Separation(const Rules &Tables) : Tables(Tables) {}
   /// Inlines in \p M; true if there was something to inline.
-  bool beginIn(llvm::Module &M) const;
+  bool inlineTransparentIn(llvm::Module &M) const;
   /// In \p M, where everything up to now was done, also copies each function of
   /// \p Names for each of its calls. Returns those that could be copied.
-  std::vector<SeparatedFunction> addIn(llvm::Module &M,
-                                       std::vector<std::string> Names);
+  std::vector<SeparatedFunction> separateIn(llvm::Module &M,
+                                            std::vector<std::string> Names);
   /// Does it all in \p M, which is as the program was.
   void applyTo(llvm::Module &M) const;
 
