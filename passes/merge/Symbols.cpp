@@ -81,12 +81,12 @@ unsigned Symbols::definerFor(unsigned Unit, const Numbers &Definers) const {
 /// True if \p Name is a function of a header, or a variable of one, that all of
 /// \p Definers compiled from the same text.
 bool Symbols::isAlike(StringRef Name, const Numbers &Definers) const {
+  // What a type is does not depend on who says it.
+  if (Name.starts_with("_ZTI") || Name.starts_with("_ZTS"))
+    return true;
   std::string Known;
   for (unsigned Each : Definers) {
     const GlobalValue *V = Units[Each].Code.getNamedValue(Name);
-    // What a type is does not depend on who says it.
-    if (Name.starts_with("_ZTI") || Name.starts_with("_ZTS"))
-      return true;
     if (!V->hasLinkOnceLinkage() && !V->hasWeakLinkage())
       return false;
     const auto *F = dyn_cast_or_null<Function>(V->getAliaseeObject());

@@ -118,8 +118,10 @@ TextUsage::TextUsage(Module &M, ModuleAnalysisManager &AM)
            !Writes.isReceived(Pointer);
   };
   forEachCall(M, Rules, Rule::Text, [&](CallBase &Call, const Rule &Row) {
-    if (Row.Relation == "copy" && Call.arg_size() >= 2 &&
-        IsOwn(Call.getArgOperand(0)) && IsOwn(Call.getArgOperand(1))) {
+    if (Row.Relation == "copy") {
+      if (Call.arg_size() < 2 || !IsOwn(Call.getArgOperand(0)) ||
+          !IsOwn(Call.getArgOperand(1)))
+        return;
       SmallVector<Copy, 4> Each;
       const Passed To{Call.getArgOperand(0)}, From{Call.getArgOperand(1)};
       if (!addCopies(*Call.getFunction(), To, From, 0, Each))
@@ -216,8 +218,6 @@ TextUsage::Found TextUsage::comparisonsOf(Locations Objects,
             Objects.push_back(To);
     for (const Use &U : Uses) {
       StringRef Relation = U.Row->Relation;
-      if (Relation == "copy")
-        continue;
       const auto *Operand = find_if(
           U.Operands, [&](const Locations &L) { return any_of(L, IsHere); });
       if (Operand == U.Operands.end() || !Seen.insert(U.Call).second)

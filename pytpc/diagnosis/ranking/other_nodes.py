@@ -81,7 +81,7 @@ class OtherNodes:
 
     def _reached(self, stream: ResultStream) -> list[Reached]:
         found = []
-        for path in self._paths(self._end(stream)):
+        for path in self.paths.from_comparison(self._end(stream)):
             other = self._streams.get(path.end)
             if other is not None and 0 < other.changes.size <= DECISIVE:
                 found.append(Reached(other.changes, CASCADE_S * len(path.links)))
@@ -107,7 +107,7 @@ class OtherNodes:
         turns = stream.changes[stream.changes <= until_s]
         times = {
             path: when
-            for path in self._paths(start)
+            for path in self.paths.from_comparison(start)
             if (when := self._chain(path, turns)) is not None
         }
         return tuple(
