@@ -30,10 +30,12 @@
 #include "support/DebugTypes.h"
 #include "support/Guard.h"
 
+#include "llvm/IR/DebugInfo.h"
 #include "llvm/IR/Module.h"
 #include "llvm/IR/PassTimingInfo.h"
 #include "llvm/Support/CommandLine.h"
 #include "llvm/Support/FileSystem.h"
+#include "llvm/Transforms/IPO/GlobalDCE.h"
 
 using namespace llvm;
 
@@ -362,8 +364,11 @@ PreservedAnalyses PrelinkPass::run(Module &M, ModuleAnalysisManager &AM) {
   const Options &Opts = AM.getResult<OptionsAnalysis>(M);
   if (!Opts.Prelink)
     return PreservedAnalyses::all();
-  // It is linked again, so this program is only used during the build.
+  // It is linked again, so this program is only used during the build, and
+  // nobody debugs it. What the compiler would have removed is still there.
   if (Opts.Analyse && isAnalysedLater()) {
+    StripDebugInfo(M);
+    GlobalDCEPass().run(M, AM);
     leaveUnoptimised(M);
     return PB.buildLTOPreLinkDefaultPipeline(OptimizationLevel::O0).run(M, AM);
   }
