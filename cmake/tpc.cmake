@@ -34,6 +34,7 @@ get_filename_component(_tpc_prefix "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE
 set(_tpc_plugin "${_tpc_prefix}/lib/tpc/TpcPasses.so")
 set(_tpc_defer "${_tpc_prefix}/lib/tpc/TpcDefer.so")
 set(_tpc_log "${_tpc_prefix}/lib/libtpc_log.so")
+set(_tpc_relink "${_tpc_prefix}/bin/tpc-relink")
 set(_tpc_flags_file "${_tpc_prefix}/share/tpc/flags")
 set(_tpc_release 19)
 if(EXISTS "${_tpc_prefix}/share/tpc/clang-version")
@@ -160,6 +161,17 @@ macro(_tpc_replace_compilers)
   unset(CMAKE_COMPILER_IS_GNUCC)
 endmacro()
 
+# Leaves out links that would change nothing.
+macro(_tpc_link_when_needed)
+  if(EXISTS "${_tpc_relink}")
+    foreach(_tpc_language ${ARGN})
+      foreach(_tpc_rule LINK_EXECUTABLE CREATE_SHARED_LIBRARY CREATE_SHARED_MODULE)
+        string(PREPEND CMAKE_${_tpc_language}_${_tpc_rule} "\"${_tpc_relink}\" ")
+      endforeach()
+    endforeach()
+  endif()
+endmacro()
+
 # Puts clang in place of the language's compiler in the rules of a language.
 macro(_tpc_name_compiler language)
   # Keeps what CMake adds to the name of the compiler for another machine.
@@ -221,6 +233,7 @@ macro(_tpc_instrument)
     set(_tpc_languages C CXX)
   endif()
   _tpc_replace_compilers(${_tpc_languages})
+  _tpc_link_when_needed(${_tpc_languages})
   _tpc_want_bitcode_alone()
   _tpc_link_with_lld(${_tpc_languages})
   foreach(_tpc_language IN LISTS _tpc_languages)

@@ -50,6 +50,7 @@ config.substitutions += [
     ("%tpc-clang", os.path.join(config.tpc_bin, "tpc-clang")),
     # Makes one module of the link units of a process.
     ("%merge", os.path.join(config.tpc_bin, "tpc-merge")),
+    ("%relink", os.path.join(config.tpc_bin, "tpc-relink")),
     ("%tpc-ar", os.path.join(config.tpc_bin, "tpc-ar")),
     ("%inputs", inputs),
     ("%python", config.tpc_python),

@@ -56,6 +56,12 @@ def stamps(workspace: Path) -> dict[str, int]:
     }
 
 
+def links(workspace: Path) -> dict[str, int]:
+    """When the linker last wrote what it read, for each link unit."""
+    lists = (workspace / ".tpc/build").glob("*/tpc/*.link.json.d")
+    return {path.name.partition(".")[0]: path.stat().st_mtime_ns for path in lists}
+
+
 @pytest.fixture(scope="module")
 def first(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, WholeBuild]:
     workspace = tmp_path_factory.mktemp("whole") / "ws"
@@ -121,6 +127,27 @@ def test_a_changed_file_analyses_its_processes_alone(first):
     finally:
         source.write_text(text)
     assert set(build(workspace).build.static.comparisons) == keys
+
+
+def test_other_code_in_a_library_links_nothing_that_uses_it(first):
+    workspace, whole = first
+    source = workspace / "src/plugged_map/src/map.cpp"
+    text = source.read_text()
+    before, stamped = links(workspace), stamps(workspace)
+    source.write_text(f"{text}\n// a remark\n")
+    try:
+        build(workspace)
+        changed = {name for name, at in links(workspace).items() if before[name] != at}
+        assert changed == {"plugged_map"}
+        # make would link it again.
+        assert stamps(workspace)["drive_node"] > stamped["drive_node"]
+        source.write_text(f"{text}\nint one_more() {{ return 1; }}\n")
+        assert places(build(workspace).build.static) == places(whole.build.static)
+        changed = {name for name, at in links(workspace).items() if before[name] != at}
+        assert changed > {"plugged_map", "drive_node"}
+    finally:
+        source.write_text(text)
+    assert build(workspace).build.static.comparisons.keys() == whole.build.static.comparisons.keys()
 
 
 def test_each_unit_alone_on_request_and_where_the_budget_ends(first, monkeypatch):

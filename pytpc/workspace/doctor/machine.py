@@ -56,6 +56,7 @@ _PARTS = (
     "share/tpc/rules/ros1.json",
     "bin/tpc-clang++",
     "bin/tpc-merge",
+    "bin/tpc-relink",
 )
 # What the log library loads in a node of ROS 1.
 _ROS1_PART = "lib/libtpc_log_ros1.so"

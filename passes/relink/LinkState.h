@@ -1,0 +1,39 @@
+//===- LinkState.h - What the result of a link depends on -----------------===//
+#ifndef TPC_RELINK_LINKSTATE_H
+#define TPC_RELINK_LINKSTATE_H
+
+#include "llvm/ADT/ArrayRef.h"
+#include "llvm/ADT/StringRef.h"
+
+#include <string>
+#include <vector>
+
+namespace tpc {
+
+/// A command that links a unit with the passes. Paths are as in the command.
+struct LinkCommandLine {
+  std::vector<std::string> Words;
+  std::string Output, Manifest, StaticInfo, Plans;
+  std::string Dependencies;       ///< where the linker lists what it read
+  std::vector<std::string> Tools; ///< files that only the passes read
+
+  /// True if this file knows all that the command reads and writes.
+  bool isKnown() const {
+    return !Output.empty() && !Manifest.empty() && !StaticInfo.empty() &&
+           !Plans.empty();
+  }
+  /// The file with the state of the last link.
+  std::string stateFile() const { return Manifest + ".state"; }
+};
+
+LinkCommandLine readCommand(llvm::ArrayRef<std::string> Words);
+
+/// True if the last run of \p Command left what another would.
+bool isUpToDate(const LinkCommandLine &Command);
+
+/// Records a run of \p Command that succeeded.
+void recordState(const LinkCommandLine &Command);
+
+} // namespace tpc
+
+#endif // TPC_RELINK_LINKSTATE_H

@@ -1,0 +1,3 @@
+# Says that a command is run, and runs it.
+echo Linked
+exec "$@"
