@@ -1,12 +1,14 @@
 //===- Aliases.cpp --------------------------------------------------------===//
 #include "memory/Aliases.h"
 
+#include "memory/CalledBack.h"
 #include "support/Budget.h"
 #include "support/Functions.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/Operator.h"
+#include "llvm/Support/CommandLine.h"
 
 using namespace llvm;
 
@@ -24,37 +26,113 @@ Aliases::Aliases(Module &M, const CallGraphResult &Calls, LocationTypes &Types)
   findEscaped(M, Calls);
 }
 
-/// A local escapes if its address is stored or returned, or passed to a
-/// function whose body is analysed.
-void Aliases::findEscaped(Module &M, const CallGraphResult &Calls) {
-  for (Function &F : definedFunctions(M))
-    for (Instruction &I : instructions(F)) {
-      if (!isa<AllocaInst>(&I))
-        continue;
-      if (Budget::isSpent())
-        return;
-      SmallVector<const Value *, 8> Work{&I};
-      SmallPtrSet<const Value *, 8> Seen;
-      while (!Work.empty()) {
-        const Value *V = Work.pop_back_val();
-        if (!Seen.insert(V).second)
-          continue;
-        for (const Use &U : V->uses()) {
-          const auto *User = cast<Instruction>(U.getUser());
-          const auto *Call = dyn_cast<CallBase>(User);
-          // A merge of pointers is followed like one of them.
-          if (isa<GEPOperator>(User) || isa<CastInst>(User) ||
-              isa<PHINode>(User) || isa<SelectInst>(User) ||
-              isa<FreezeInst>(User) || isa<InsertValueInst>(User) ||
-              isa<ExtractValueInst>(User))
-            Work.push_back(User);
-          else if (isa<ReturnInst>(User) ||
-                   (isa<StoreInst>(User) && U.getOperandNo() == 0) ||
-                   (Call && !Calls.callees(*Call).empty()))
-            Escaped.insert(&I);
-        }
+/// Of a pointer to MaxLocations places only the class is known, and such a one
+/// leads to no local that does not escape. The argument of a function with very
+/// many calls may be one, so what is passed as it counts as escaped.
+static cl::opt<unsigned>
+    MaxPassing("tpc-max-passing-calls", cl::Hidden, cl::init(24),
+               cl::desc("Calls of a function whose argument is followed to "
+                        "tell whether the address of a local escapes"));
+
+namespace {
+/// Where the address of a local, or an argument, goes.
+struct Flow {
+  bool Escapes = false; ///< stored, returned, or known to a library
+  SmallVector<const Argument *, 4> To;
+};
+} // namespace
+
+/// True if a function without a body, which \p Call calls, can call a virtual
+/// function of the object at \p Arg. That one gets the address from nowhere.
+static bool isCalledBack(const CallBase &Call, const Use &Arg,
+                         CalledBack &Back) {
+  const auto Handed = Back.handedBy(Call);
+  size_t N = 0;
+  for (const Use &Other : Call.args()) {
+    if (!Other->getType()->isPointerTy() || isa<ConstantPointerNull>(Other))
+      continue;
+    if (N == Handed.size())
+      return false;
+    if (&Other == &Arg)
+      return Handed[N]->Unknown || !Handed[N]->Virtual.empty();
+    ++N;
+  }
+  return false;
+}
+
+static Flow flowOf(const Value &Pointer, const CallGraphResult &Calls,
+                   CalledBack &Back) {
+  Flow Out;
+  auto Pass = [&](const CallBase &Call, unsigned N) {
+    for (const Function *F : Calls.callees(Call))
+      if (N < F->arg_size() && Calls.callers(F).size() <= MaxPassing)
+        Out.To.push_back(F->getArg(N));
+      else
+        Out.Escapes = true;
+  };
+  SmallVector<const Value *, 8> Work{&Pointer};
+  SmallPtrSet<const Value *, 8> Seen;
+  while (!Work.empty() && !Out.Escapes) {
+    const Value *V = Work.pop_back_val();
+    if (!Seen.insert(V).second)
+      continue;
+    for (const Use &U : V->uses()) {
+      const auto *User = cast<Instruction>(U.getUser());
+      const auto *Call = dyn_cast<CallBase>(User);
+      // A merge of pointers is followed like one of them.
+      if (isa<GEPOperator>(User) || isa<CastInst>(User) || isa<PHINode>(User) ||
+          isa<SelectInst>(User) || isa<FreezeInst>(User) ||
+          isa<InsertValueInst>(User) || isa<ExtractValueInst>(User))
+        Work.push_back(User);
+      else if (isa<ReturnInst>(User) ||
+               (isa<StoreInst>(User) && U.getOperandNo() == 0))
+        Out.Escapes = true;
+      else if (Call && Call->isArgOperand(&U)) {
+        if (!Calls.callees(*Call).empty())
+          Pass(*Call, Call->getArgOperandNo(&U));
+        else
+          Out.Escapes |= isCalledBack(*Call, U, Back);
       }
     }
+  }
+  return Out;
+}
+
+/// A local escapes if its address is stored or returned, by its function or by
+/// one that it is passed to, or if a library can call its virtual functions. An
+/// argument leads to the locals that are passed as it, so passing alone makes
+/// no unknown pointer.
+void Aliases::findEscaped(Module &M, const CallGraphResult &Calls) {
+  DenseMap<const Argument *, SmallVector<const Value *, 4>> From;
+  SmallVector<const Value *, 0> Work;
+  DebugTypes Debug(M.getDataLayout());
+  CalledBack Back(M, Debug);
+  auto Add = [&](const Value &Pointer) {
+    Flow Of = flowOf(Pointer, Calls, Back);
+    if (Of.Escapes)
+      Work.push_back(&Pointer);
+    else
+      for (const Argument *To : Of.To)
+        From[To].push_back(&Pointer);
+  };
+  for (Function &F : definedFunctions(M)) {
+    if (Budget::isSpent())
+      return;
+    for (const Argument &Arg : F.args())
+      if (Arg.getType()->isPointerTy())
+        Add(Arg);
+    for (const Instruction &I : instructions(F))
+      if (isa<AllocaInst>(&I))
+        Add(I);
+  }
+  while (!Work.empty()) {
+    const Value *Pointer = Work.pop_back_val();
+    if (!Escaped.insert(Pointer).second)
+      continue;
+    if (const auto *Arg = dyn_cast<Argument>(Pointer))
+      if (auto It = From.find(Arg); It != From.end())
+        append_range(Work, It->second);
+  }
 }
 
 bool Aliases::isReachable(const Location &L) const {

@@ -46,6 +46,7 @@ Received::Received(Module &M, const CallGraphResult &Calls, DebugTypes &Debug,
           Found.insert(&Arg);
   for (size_t N = 0; N < Found.size(); ++N)
     addUsersOf(Found[N]);
+  Reached.insert(Found.begin(), Found.end());
   while (Found.remove_if([&](const Value *V) { return !isSupported(V); }))
     ;
 }
@@ -210,6 +211,10 @@ bool Received::has(const Value *Pointer) const {
     return false;
   const Value *Origin = PointsTo::baseOf(Pointer);
   return isa<ConstantPointerNull, UndefValue>(Origin) || Found.contains(Origin);
+}
+
+bool Received::mayHave(const Value *Pointer) const {
+  return Reached.contains(PointsTo::baseOf(Pointer));
 }
 
 } // namespace tpc

@@ -22,6 +22,7 @@
 #include "support/DebugTypes.h"
 
 #include "llvm/ADT/DenseMap.h"
+#include "llvm/ADT/DenseSet.h"
 #include "llvm/ADT/SetVector.h"
 
 namespace tpc {
@@ -37,6 +38,9 @@ public:
   /// True if \p Pointer, where it is not null, only leads to what other
   /// processes filled.
   bool has(const llvm::Value *Pointer) const;
+  /// True if \p Pointer can lead to what other processes filled, although it
+  /// may lead elsewhere, too, for all that is known about who calls a callback.
+  bool mayHave(const llvm::Value *Pointer) const;
 
 private:
   bool isHandedOver(const llvm::Argument &Arg);
@@ -57,6 +61,8 @@ private:
   llvm::DenseMap<const llvm::Use *, bool> PassedOn;
   /// Arguments, phis, selects and loads; all others are computed from those.
   llvm::SmallSetVector<const llvm::Value *, 16> Found;
+  /// All that were reached from the callbacks.
+  llvm::DenseSet<const llvm::Value *> Reached;
 };
 
 } // namespace tpc

@@ -240,12 +240,10 @@ SmallVector<Instruction *, 8> VisibleWrites::writesInto(const Location &L,
     return {};
   bool Local = isLocalOf(L, At) && !Alias.isReachable(L);
   LocationMap<Writes> Gone;
-  SmallVector<Part, 4> Parts;
-  if (!Local)
-    Parts = replacedParts(L, At, Pointer);
+  const SmallVector<Part, 4> Parts = replacedParts(L, At, Pointer);
   // For each part, the last write before \p At counts.
   auto Stays = [&](const Instruction &Write, const Location &Where) {
-    if (!Local) {
+    if (!Local || Write.getFunction() != At.getFunction()) {
       auto Way = Alias.partOf(L, Where);
       auto *It = find_if(Parts, [&](const Part &P) {
         return Way && StepPath::areSame(P.Way, *Way);

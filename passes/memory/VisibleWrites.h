@@ -56,6 +56,10 @@ public:
   bool isReceived(const llvm::Value *Pointer) const {
     return Messages.has(Pointer);
   }
+  /// True if another process may have filled it, for all that is known.
+  bool mayBeReceived(const llvm::Value *Pointer) const {
+    return Messages.mayHave(Pointer);
+  }
 
   /// True if \p Call always gives the object at \p Pointer a new value.
   bool replaces(const llvm::CallBase &Call, const llvm::Value *Pointer) const;

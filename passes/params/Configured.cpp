@@ -59,8 +59,12 @@ Locations Configured::writtenBy(const Instruction &Write) const {
 }
 
 /// Adds what \p Load may read; false if anything but the stores of the program
-/// to the same variable may be read.
-bool Configured::addStored(const LoadInst &Load, Sources &Out) const {
+/// to the same variable may be read. If it is not known who calls a callback,
+/// its message can be one of the program's; it counts as such unless \p Surely.
+bool Configured::addStored(const LoadInst &Load, Sources &Out,
+                           bool Surely) const {
+  if (Surely && Writes.mayBeReceived(Load.getPointerOperand()))
+    return false;
   Locations From = Pointers.resolve(Load.getPointerOperand(), true);
   if (From.empty())
     return false;
@@ -87,7 +91,7 @@ bool Configured::addStored(const LoadInst &Load, Sources &Out) const {
 
 /// Adds what \p V is computed from; false if that is not known, or comes from
 /// outside.
-bool Configured::addSources(const Value *V, Sources &Out) const {
+bool Configured::addSources(const Value *V, Sources &Out, bool Surely) const {
   if (const auto *Arg = dyn_cast<Argument>(V)) {
     const Function &F = *Arg->getParent();
     ArrayRef<CallBase *> Callers = Calls.callers(&F);
@@ -101,7 +105,7 @@ bool Configured::addSources(const Value *V, Sources &Out) const {
     return true;
   }
   if (const auto *Load = dyn_cast<LoadInst>(V))
-    return addStored(*Load, Out);
+    return addStored(*Load, Out, Surely);
   if (const auto *Call = dyn_cast<CallBase>(V)) {
     if (isa<IntrinsicInst>(Call) && Call->doesNotAccessMemory()) {
       append_range(Out, Call->args());
@@ -129,8 +133,8 @@ bool Configured::addSources(const Value *V, Sources &Out) const {
   return true;
 }
 
-bool Configured::has(const Value *V) {
-  auto [It, New] = Known.try_emplace(V, false);
+bool Configured::has(const Value *V, bool Surely) {
+  auto [It, New] = Known[Surely].try_emplace(V, false);
   if (!New)
     return It->second;
   Sources Work{V};
@@ -140,16 +144,16 @@ bool Configured::has(const Value *V) {
     if (isa<Constant>(Next) || Parameters.contains(Next) ||
         !Seen.insert(Next).second)
       continue;
-    if (Seen.size() > MaxSources || !addSources(Next, Work))
+    if (Seen.size() > MaxSources || !addSources(Next, Work, Surely))
       return false;
   }
-  return Known[V] = true;
+  return Known[Surely][V] = true;
 }
 
 bool Configured::isWrittenDown(const Value *V) const {
   const auto *Load = dyn_cast<LoadInst>(stripCasts(V));
   Sources From;
-  return Load && addStored(*Load, From) && !From.empty() &&
+  return Load && addStored(*Load, From, /*Surely=*/false) && !From.empty() &&
          all_of(From, [](const Value *S) { return isa<Constant>(S); }) &&
          none_of(Pointers.resolve(Load->getPointerOperand(), true),
                  [](const Location &L) {

@@ -23,8 +23,9 @@ public:
   Configured(const ParamCallFinder::Result &Reads, const CallGraphResult &Calls,
              PointsTo &Pointers, VisibleWrites &Writes);
 
-  /// True if \p V is known to be computed from parameters and constants alone.
-  bool has(const llvm::Value *V);
+  /// True if \p V is computed from parameters and constants alone, for all that
+  /// is known; with \p Surely, no message can be in it.
+  bool has(const llvm::Value *V, bool Surely = false);
   /// True if \p V is read from a member or global in which the program stores
   /// constants alone: a threshold that somebody wrote down. A local is the
   /// beginning of a computation.
@@ -33,8 +34,8 @@ public:
 private:
   using Sources = llvm::SmallVector<const llvm::Value *, 8>;
   Locations writtenBy(const llvm::Instruction &Write) const;
-  bool addSources(const llvm::Value *V, Sources &Out) const;
-  bool addStored(const llvm::LoadInst &Load, Sources &Out) const;
+  bool addSources(const llvm::Value *V, Sources &Out, bool Surely) const;
+  bool addStored(const llvm::LoadInst &Load, Sources &Out, bool Surely) const;
   bool isHanded(const llvm::Instruction &Call,
                 llvm::ArrayRef<Location> Variables) const;
 
@@ -43,7 +44,7 @@ private:
   PointsTo &Pointers;
   VisibleWrites &Writes;
   llvm::SmallPtrSet<const llvm::Value *, 16> Parameters;
-  llvm::DenseMap<const llvm::Value *, bool> Known;
+  llvm::DenseMap<const llvm::Value *, bool> Known[2];
 };
 
 } // namespace tpc

@@ -78,7 +78,7 @@ bool Sides::isMeasured(const ParameterComparison &C,
       !C.How.Part.empty() && any_of(Others, [&](const ParameterComparison *O) {
         return O->Operand != C.Operand && O->How.Part.empty();
       });
-  return !Values.has(Own) && (IsData || Values.has(Other));
+  return !Values.has(Own) && (IsData || Values.has(Other, /*Surely=*/true));
 }
 
 } // namespace tpc
