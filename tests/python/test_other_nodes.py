@@ -93,3 +93,73 @@ def test_a_later_turn_than_messages_take_is_no_evidence() -> None:
     assert others is not None
     assert others.followed(key(1), "/camera", 15.0) == ()
     assert not isinstance(others.followed(key(1), "/nobody", 15.0), Followed)
+
+
+Turns = dict[tuple[int, str], list[float]]
+
+
+def turned(turns: Turns, found: StaticInfo) -> OtherNodes:
+    """Each comparison (TPC, node) is evaluated at 0 s, and turns at its times."""
+    rows = [
+        (time, tpc, n % 2 == 1, n % 2 == 1, 0.5, node)
+        for (tpc, node), times in turns.items()
+        for n, time in enumerate([0.0, *times])
+    ]
+    made = events(sorted(rows))
+    recording = Recording("m", made, (), ns(0), ns(40))
+    tpcs = Tpcs.of(found)
+    wiring = Wiring(evaluated=recording.nodes_of)
+    others = OtherNodes.of(ResultStreams.of(made, tpcs), tpcs, found, wiring)
+    assert others is not None
+    return others
+
+
+def seen(others: OtherNodes, node: str, until_s: float) -> list[tuple[float, float]]:
+    found = others.followed(key(1), node, until_s)
+    return [(round(one.turned_s, 6), round(one.after_s, 6)) for one in found]
+
+
+def test_each_process_of_a_program_has_its_own_turns() -> None:
+    # retry follows process 41 after 5.4 - 5 = 0.4 s; process 97 turns 14.6 s later.
+    first = turned(
+        {(1, "/camera.py 41"): [5.0], (1, "/camera.py 97"): [20.0], (2, "/driver"): [5.4]},
+        static(),
+    )
+    assert seen(first, "/camera.py 41", 30) == [(5, 0.4)]
+    assert seen(first, "/camera.py 97", 30) == []
+
+
+def test_all_processes_that_hear_a_message_count() -> None:
+    # Process 7 follows after 0.4 s, process 8 turns 10 s later.
+    others = turned(
+        {(1, "/camera"): [5.0], (2, "/driver.py 7"): [5.4], (2, "/driver.py 8"): [15.0]}, static()
+    )
+    assert seen(others, "/camera", 30) == [(5, 0.4)]
+    reached = {tuple(one.turns.tolist()) for found in others.reached for one in found}
+    assert reached == {(5.4,), (15.0,)}
+
+
+def test_what_changes_all_the_time_is_no_evidence() -> None:
+    # 21 turns, one a second from 0.4 s: more than DECISIVE (20). That at 5.4 s is 0.4 s after 5 s.
+    flaps = [n + 0.4 for n in range(21)]
+    assert (
+        seen(turned({(1, "/camera"): [5.0], (2, "/driver"): flaps}, static()), "/camera", 30) == []
+    )
+    others = turned({(1, "/camera"): [5.0], (2, "/driver"): flaps[:20]}, static())
+    assert seen(others, "/camera", 30) == [(5, 0.4)]
+
+
+def test_any_turn_in_between_may_lead_on() -> None:
+    # 10 -> 11.4 is 1.4 s, 11.4 -> 12.5 is 1.1 s. From the first in between, 10.1, it is 2.4 s.
+    heard = Received("/cmd", None, "value", "src/node.cpp", 20)
+    arm = replace(link_unit([comparison(4, "~arm", received=(heard,))]), link_unit="arm")
+    turns: Turns = {(1, "/camera"): [10.0], (2, "/driver"): [10.1, 11.4], (4, "/arm"): [12.5]}
+    others = turned(turns, StaticInfo.of([*static().units, arm]))
+    assert seen(others, "/camera", 30) == [(10, 2.5)]
+
+
+def test_turns_after_the_time_are_no_evidence() -> None:
+    # retry turns at 5.4 s.
+    others = turned({(1, "/camera"): [5.0], (2, "/driver"): [5.4]}, static())
+    assert seen(others, "/camera", 5.3) == []
+    assert seen(others, "/camera", 5.4) == [(5, 0.4)]

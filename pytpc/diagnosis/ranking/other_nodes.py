@@ -8,6 +8,7 @@ counts.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -61,15 +62,20 @@ class OtherNodes:
         return cls(streams, tpcs, MessagePaths(static_info, wiring))
 
     @cached_property
-    def _known(self) -> dict[NodeComparison, list[MessagePath]]:
-        return {}
-
-    @cached_property
-    def _streams(self) -> dict[NodeComparison, ResultStream]:
-        return {self._end(stream): stream for stream in self.streams.streams}
+    def _streams(self) -> dict[NodeComparison, list[ResultStream]]:
+        """By the name without a process: two processes of one program have the same."""
+        found: dict[NodeComparison, list[ResultStream]] = defaultdict(list)
+        for stream in self.streams.streams:
+            found[self._end(stream)].append(stream)
+        return dict(found)
 
     def _end(self, stream: ResultStream) -> NodeComparison:
         return NodeComparison(self.tpcs.keys[stream.code], stream.node.partition(" ")[0])
+
+    def _turning(self, end: NodeComparison) -> list[Floats]:
+        """The turns of a comparison in each process, without those that change all the time."""
+        turns = (stream.changes for stream in self._streams.get(end, ()))
+        return [each for each in turns if 0 < each.size <= DECISIVE]
 
     @cached_property
     def reached(self) -> list[tuple[Reached, ...]]:
@@ -80,60 +86,55 @@ class OtherNodes:
         return [tuple(self._reached(stream)) for stream in self.streams.streams]
 
     def _reached(self, stream: ResultStream) -> list[Reached]:
-        found = []
-        for path in self.paths.from_comparison(self._end(stream)):
-            other = self._streams.get(path.end)
-            if other is not None and 0 < other.changes.size <= DECISIVE:
-                found.append(Reached(other.changes, CASCADE_S * len(path.links)))
-        return found
-
-    def _paths(self, start: NodeComparison) -> list[MessagePath]:
-        if start not in self._known:
-            self._known[start] = self.paths.from_comparison(start)
-        return self._known[start]
+        return [
+            Reached(turns, CASCADE_S * len(path.links))
+            for path in self.paths.from_comparison(self._end(stream))
+            for turns in self._turning(path.end)
+        ]
 
     def followed(self, key: str, node: str, until_s: float) -> tuple[Followed, ...]:
         """The paths from a comparison on which others turned after its last turn up to a time.
 
         Args:
             key: of the comparison.
-            node: that evaluated it.
+            node: that evaluated it, with its process where reports name one.
             until_s: the time, in seconds since the log began.
         """
         start = NodeComparison(key, node.partition(" ")[0])
-        stream = self._streams.get(start)
-        if stream is None:
+        own = [stream.changes for stream in self._streams.get(start, ()) if stream.node == node]
+        if not own:
             return ()
-        turns = stream.changes[stream.changes <= until_s]
         times = {
             path: when
             for path in self.paths.from_comparison(start)
-            if (when := self._chain(path, turns)) is not None
+            if (when := self._chain(path, own[0], until_s)) is not None
         }
         return tuple(
             Followed(path_text(self.paths.static, path), *times[path])
             for path in leaves(list(times))[:_SHOWN]
         )
 
-    def _chain(self, path: MessagePath, turns: Floats) -> tuple[float, float] | None:
-        """The last turn that the comparisons of a path followed in their order; and how long after
-        it the last of them turned."""
-        for turn in reversed(turns.tolist()):
-            here: float | None = turn
-            for link in path.links:
-                stream = self._streams.get(link.to)
-                here = None if stream is None or here is None else _next(stream.changes, here)
-            if here is not None:
-                return turn, here - turn
+    def _chain(
+        self, path: MessagePath, turns: Floats, until_s: float
+    ) -> tuple[float, float] | None:
+        """The last turn that the comparisons of a path followed in their order up to a time; and
+        how long after it the last of them turned first."""
+        later = [
+            np.unique(np.concatenate([np.zeros(0), *self._turning(link.to)])) for link in path.links
+        ]
+        for turn in reversed(turns[turns <= until_s].tolist()):
+            here = np.array([turn])
+            for others in later:
+                here = _following(others[others <= until_s], here)
+            if here.size:
+                return turn, float(here[0]) - turn
         return None
 
 
-def _next(turns: Floats, time: float) -> float | None:
-    """The first turn that follows a time closely enough to be its effect."""
-    place = int(np.searchsorted(turns, time, side="left"))
-    if place == turns.size or turns[place] - time > CASCADE_S:
-        return None
-    return float(turns[place])
+def _following(turns: Floats, times: Floats) -> Floats:
+    """The turns that follow any of the times closely enough to be its effect; all are sorted."""
+    before = np.concatenate([[-np.inf], times])[np.searchsorted(times, turns, side="right")]
+    return np.asarray(turns[turns - before <= CASCADE_S])
 
 
 def effects(turns: Floats, reached: Sequence[Reached]) -> Floats:
