@@ -53,7 +53,8 @@ LinkCommandLine readCommand(ArrayRef<std::string> Words) {
           std::pair("--dependency-file=", &Out.Dependencies)})
       if (auto Value = valueOf(Word, Option))
         *File = Value->str();
-    for (StringRef Option : {"-tpc-rules=", "--load-pass-plugin="})
+    for (StringRef Option :
+         {"-tpc-rules=", "--load-pass-plugin=", "--ld-path="})
       if (auto Value = valueOf(Word, Option))
         Out.Tools.push_back(Value->str());
   }
@@ -150,7 +151,7 @@ static std::vector<std::string> filesRead(StringRef Path) {
 
 /// Libraries of the system change with an update of it alone.
 static bool isOfSystem(StringRef Path) {
-  return Path.starts_with("/usr/") || Path.starts_with("/lib");
+  return Path.starts_with("/usr/lib") || Path.starts_with("/lib");
 }
 
 static json::Object describe(const Input &In) {
@@ -266,7 +267,16 @@ static void writeState(const LinkCommandLine &Command, json::Object State) {
   }));
 }
 
-void recordState(const LinkCommandLine &Command) {
+/// True if \p Path was written after \p Start: the link may have read less.
+static bool isNewer(const Twine &Path, sys::TimePoint<> Start) {
+  sys::fs::file_status Status;
+  return !sys::fs::status(Path, Status) &&
+         Status.getLastModificationTime() >= Start;
+}
+
+void recordState(const LinkCommandLine &Command, sys::TimePoint<> Start) {
+  if (isNewer(Command.Plans + "/changed", Start))
+    return;
   std::vector<std::string> Files = filesRead(Command.Dependencies);
   if (Files.empty())
     return;
@@ -275,7 +285,7 @@ void recordState(const LinkCommandLine &Command) {
     for (const std::string &File : IsLinked ? Files : Command.Tools) {
       std::optional<Interface> Shared;
       std::optional<Input> In = read(File, IsLinked, Shared);
-      if (!In || !json::isUTF8(File))
+      if (!In || !json::isUTF8(File) || isNewer(File, Start))
         return;
       All[File] = describe(*In);
     }

@@ -4,6 +4,7 @@
 
 #include "llvm/ADT/ArrayRef.h"
 #include "llvm/ADT/StringRef.h"
+#include "llvm/Support/Chrono.h"
 
 #include <string>
 #include <vector>
@@ -31,8 +32,9 @@ LinkCommandLine readCommand(llvm::ArrayRef<std::string> Words);
 /// True if the last run of \p Command left what another would.
 bool isUpToDate(const LinkCommandLine &Command);
 
-/// Records a run of \p Command that succeeded.
-void recordState(const LinkCommandLine &Command);
+/// Records a run of \p Command that began at \p Start and succeeded, unless
+/// something that it read has changed since.
+void recordState(const LinkCommandLine &Command, llvm::sys::TimePoint<> Start);
 
 } // namespace tpc
 

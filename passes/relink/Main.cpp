@@ -61,14 +61,13 @@ static int runCommand(ArrayRef<std::string> Words) {
   return WIFEXITED(Status) ? WEXITSTATUS(Status) : 1;
 }
 
-/// Gives \p Path the time of now; false if that is not possible.
-static bool touch(const std::string &Path) {
+/// Gives \p Path the time \p Now; false if that is not possible.
+static bool touch(const std::string &Path, sys::TimePoint<> Now) {
   int File;
   if (sys::fs::openFileForReadWrite(Path, File, sys::fs::CD_OpenExisting,
                                     sys::fs::OF_None))
     return false;
-  bool IsDone = !sys::fs::setLastAccessAndModificationTime(
-      File, std::chrono::system_clock::now());
+  bool IsDone = !sys::fs::setLastAccessAndModificationTime(File, Now);
   close(File);
   return IsDone;
 }
@@ -88,13 +87,15 @@ int main(int Argc, char **Argv) {
     Command.Dependencies = Command.Manifest + ".d";
     Words.push_back("-Wl,--dependency-file=" + Command.Dependencies);
   }
+  // What changes meanwhile must be newer.
+  const sys::TimePoint<> Start = std::chrono::system_clock::now();
   // The output is last: it is not older than what describes it.
-  if (isUpToDate(Command) && touch(Command.StaticInfo) &&
-      touch(Command.Manifest) && touch(Command.Output))
+  if (isUpToDate(Command) && touch(Command.StaticInfo, Start) &&
+      touch(Command.Manifest, Start) && touch(Command.Output, Start))
     return 0;
   sys::fs::remove(Command.stateFile());
   int Status = runCommand(Words);
   if (Status == 0)
-    recordState(Command);
+    recordState(Command, Start);
   return Status;
 }
