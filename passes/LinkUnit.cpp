@@ -12,6 +12,7 @@
 #include "instrument/InstrumentReads.h"
 #include "memory/AccessIndex.h"
 #include "memory/Aliases.h"
+#include "memory/CalledBack.h"
 #include "memory/LocationTypes.h"
 #include "memory/PointsTo.h"
 #include "memory/VisibleWrites.h"
@@ -47,6 +48,7 @@ void registerAnalyses(ModuleAnalysisManager &AM) {
   AM.registerPass([] { return RuleAnalysis(); });
   AM.registerPass([] { return SimpleCallGraph(); });
   AM.registerPass([] { return DebugTypesAnalysis(); });
+  AM.registerPass([] { return CalledBackAnalysis(); });
   AM.registerPass([] { return LocationTypesAnalysis(); });
   AM.registerPass([] { return AliasesAnalysis(); });
   AM.registerPass([] { return PointsToAnalysis(); });

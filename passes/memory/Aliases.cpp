@@ -1,7 +1,6 @@
 //===- Aliases.cpp --------------------------------------------------------===//
 #include "memory/Aliases.h"
 
-#include "memory/CalledBack.h"
 #include "support/Budget.h"
 #include "support/Functions.h"
 
@@ -18,12 +17,14 @@ AnalysisKey AliasesAnalysis::Key;
 
 Aliases AliasesAnalysis::run(Module &M, ModuleAnalysisManager &AM) {
   return Aliases(M, AM.getResult<SimpleCallGraph>(M),
+                 AM.getResult<CalledBackAnalysis>(M),
                  AM.getResult<LocationTypesAnalysis>(M));
 }
 
-Aliases::Aliases(Module &M, const CallGraphResult &Calls, LocationTypes &Types)
+Aliases::Aliases(Module &M, const CallGraphResult &Calls, CalledBack &Back,
+                 LocationTypes &Types)
     : Types(Types) {
-  findEscaped(M, Calls);
+  findEscaped(M, Calls, Back);
 }
 
 /// Of a pointer to MaxLocations places only the class is known, and such a one
@@ -42,22 +43,12 @@ struct Flow {
 };
 } // namespace
 
-/// True if a function without a body, which \p Call calls, can call a virtual
-/// function of the object at \p Arg. That one gets the address from nowhere.
+/// True if what \p Call calls, without a body, can call a virtual function of
+/// the object at \p Arg. That one gets the address from nowhere.
 static bool isCalledBack(const CallBase &Call, const Use &Arg,
                          CalledBack &Back) {
-  const auto Handed = Back.handedBy(Call);
-  size_t N = 0;
-  for (const Use &Other : Call.args()) {
-    if (!Other->getType()->isPointerTy() || isa<ConstantPointerNull>(Other))
-      continue;
-    if (N == Handed.size())
-      return false;
-    if (&Other == &Arg)
-      return Handed[N]->Unknown || !Handed[N]->Virtual.empty();
-    ++N;
-  }
-  return false;
+  const CalledBack::Callable *Object = Back.handedAs(Call, Arg);
+  return Object && (Object->Unknown || !Object->Virtual.empty());
 }
 
 static Flow flowOf(const Value &Pointer, const CallGraphResult &Calls,
@@ -102,11 +93,10 @@ static Flow flowOf(const Value &Pointer, const CallGraphResult &Calls,
 /// one that it is passed to, or if a library can call its virtual functions. An
 /// argument leads to the locals that are passed as it, so passing alone makes
 /// no unknown pointer.
-void Aliases::findEscaped(Module &M, const CallGraphResult &Calls) {
+void Aliases::findEscaped(Module &M, const CallGraphResult &Calls,
+                          CalledBack &Back) {
   DenseMap<const Argument *, SmallVector<const Value *, 4>> From;
   SmallVector<const Value *, 0> Work;
-  DebugTypes Debug(M.getDataLayout());
-  CalledBack Back(M, Debug);
   auto Add = [&](const Value &Pointer) {
     Flow Of = flowOf(Pointer, Calls, Back);
     if (Of.Escapes)

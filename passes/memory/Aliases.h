@@ -13,6 +13,7 @@
 #define TPC_ALIASES_H
 
 #include "calls/SimpleCallGraph.h"
+#include "memory/CalledBack.h"
 #include "memory/LocationTypes.h"
 
 #include "llvm/ADT/DenseSet.h"
@@ -23,7 +24,8 @@ namespace tpc {
 
 class Aliases {
 public:
-  Aliases(llvm::Module &M, const CallGraphResult &Calls, LocationTypes &Types);
+  Aliases(llvm::Module &M, const CallGraphResult &Calls, CalledBack &Back,
+          LocationTypes &Types);
 
   /// True if a pointer without a known root can lead to \p L.
   bool isReachable(const Location &L) const;
@@ -34,7 +36,8 @@ public:
                                                    const Location &L) const;
 
 private:
-  void findEscaped(llvm::Module &M, const CallGraphResult &Calls);
+  void findEscaped(llvm::Module &M, const CallGraphResult &Calls,
+                   CalledBack &Back);
 
   LocationTypes &Types;
   /// The locals that code elsewhere can reach without naming them.

@@ -12,6 +12,8 @@ using namespace llvm;
 
 namespace tpc {
 
+AnalysisKey CalledBackAnalysis::Key;
+
 /// Limits the walk through nested classes. An object with more classes in it
 /// can call anything.
 static cl::opt<unsigned> MaxParts(
@@ -118,18 +120,28 @@ const CalledBack::Callable &CalledBack::ofParameters(const Function &F) {
   return *Out;
 }
 
+/// True if \p Call calls a function without a body that may call others.
+static bool mayCallBack(const CallBase &Call) {
+  const Function *Callee = Call.getCalledFunction();
+  return Callee && Callee->isDeclarationForLinker() && !Callee->isIntrinsic() &&
+         !callsNothing(Callee->getName());
+}
+
+const CalledBack::Callable *CalledBack::handedAs(const CallBase &Call,
+                                                 const Use &Arg) {
+  if (!Arg->getType()->isPointerTy() || isa<ConstantPointerNull>(Arg) ||
+      !mayCallBack(Call))
+    return nullptr;
+  const DIType *T = Debug.pointee(Arg);
+  return T ? &ofType(T) : &ofParameters(*Call.getCalledFunction());
+}
+
 SmallVector<const CalledBack::Callable *, 2>
 CalledBack::handedBy(const CallBase &Call) {
   SmallVector<const Callable *, 2> Found;
-  const Function *Callee = Call.getCalledFunction();
-  if (!Callee || !Callee->isDeclarationForLinker() || Callee->isIntrinsic() ||
-      callsNothing(Callee->getName()))
-    return Found;
   for (const Use &Arg : Call.args())
-    if (Arg->getType()->isPointerTy() && !isa<ConstantPointerNull>(Arg)) {
-      const DIType *T = Debug.pointee(Arg);
-      Found.push_back(T ? &ofType(T) : &ofParameters(*Callee));
-    }
+    if (const Callable *Object = handedAs(Call, Arg))
+      Found.push_back(Object);
   return Found;
 }
 

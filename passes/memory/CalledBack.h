@@ -37,6 +37,9 @@ public:
   /// For each object that \p Call passes to a function without a body: what can
   /// be called through it.
   llvm::SmallVector<const Callable *, 2> handedBy(const llvm::CallBase &Call);
+  /// The same for the object that \p Call passes as \p Arg; null if it passes
+  /// none, or not to such a function.
+  const Callable *handedAs(const llvm::CallBase &Call, const llvm::Use &Arg);
 
 private:
   const Callable &ofType(const llvm::DIType *T);
@@ -49,6 +52,18 @@ private:
   std::optional<ClassHierarchy> Classes; ///< created when first needed
   llvm::DenseMap<const llvm::DIType *, std::unique_ptr<Callable>> ByType;
   llvm::DenseMap<const llvm::Function *, std::unique_ptr<Callable>> ByFunction;
+};
+
+class CalledBackAnalysis : public llvm::AnalysisInfoMixin<CalledBackAnalysis> {
+public:
+  using Result = CalledBack;
+  Result run(llvm::Module &M, llvm::ModuleAnalysisManager &AM) {
+    return CalledBack(M, AM.getResult<DebugTypesAnalysis>(M));
+  }
+
+private:
+  friend llvm::AnalysisInfoMixin<CalledBackAnalysis>;
+  static llvm::AnalysisKey Key;
 };
 
 } // namespace tpc

@@ -40,11 +40,11 @@ static bool letsOthersRun(const Function &F) {
 }
 
 Reaching::Reaching(Module &M, const CallGraphResult &Calls,
-                   const ThrowsResult &Thrown, DebugTypes &Debug,
+                   const ThrowsResult &Thrown, CalledBack &Handed,
                    ArrayRef<Replacement> ByCalls)
     : Layout(M.getDataLayout()), Calls(Calls), Thrown(Thrown),
       Unresolved(Calls.unresolved().begin(), Calls.unresolved().end()),
-      Handed(M, Debug) {
+      Handed(Handed) {
   for (const Function &F : definedFunctions(M)) {
     for (const Instruction *I : Calls.mentions(&F))
       HandedOn[I].push_back(&F);

@@ -45,7 +45,7 @@ public:
   using Instructions = llvm::SmallVector<const llvm::Instruction *, 2>;
 
   Reaching(llvm::Module &M, const CallGraphResult &Calls,
-           const ThrowsResult &Thrown, DebugTypes &Debug,
+           const ThrowsResult &Thrown, CalledBack &Handed,
            llvm::ArrayRef<Replacement> ByCalls);
 
   /// None if \p Pointer is not the same place each time it is computed.
@@ -135,7 +135,7 @@ private:
   const ThrowsResult &Thrown;
   llvm::DenseSet<const llvm::CallBase *> Unresolved;
   llvm::DenseMap<const llvm::CallBase *, Variable> Replacing;
-  CalledBack Handed;
+  CalledBack &Handed;
   /// The functions whose address each instruction passes on, and all of them
   /// together.
   llvm::DenseMap<const llvm::Instruction *,

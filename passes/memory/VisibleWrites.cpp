@@ -21,7 +21,7 @@ VisibleWrites::VisibleWrites(Module &M, ModuleAnalysisManager &AM)
       Accesses(AM.getResult<ClassObjectAccess>(M)),
       Locals(M, AM.getResult<RuleAnalysis>(M), Types, Pointers, Accesses),
       Shared(M, AM.getResult<SimpleCallGraph>(M), AM.getResult<Throws>(M),
-             AM.getResult<DebugTypesAnalysis>(M), Accesses.replacements()),
+             AM.getResult<CalledBackAnalysis>(M), Accesses.replacements()),
       Messages(M, AM.getResult<SimpleCallGraph>(M),
                AM.getResult<DebugTypesAnalysis>(M), Types, Pointers, Accesses,
                UserSources(AM.getResult<OptionsAnalysis>(M))) {}
