@@ -36,6 +36,8 @@ set(_tpc_defer "${_tpc_prefix}/lib/tpc/TpcDefer.so")
 set(_tpc_log "${_tpc_prefix}/lib/libtpc_log.so")
 set(_tpc_relink "${_tpc_prefix}/bin/tpc-relink")
 set(_tpc_flags_file "${_tpc_prefix}/share/tpc/flags")
+# CMake's rules that link, without CMAKE_<LANG>_.
+set(_tpc_link_rules LINK_EXECUTABLE CREATE_SHARED_LIBRARY CREATE_SHARED_MODULE)
 set(_tpc_release 19)
 if(EXISTS "${_tpc_prefix}/share/tpc/clang-version")
   file(STRINGS "${_tpc_prefix}/share/tpc/clang-version" _tpc_release LIMIT_COUNT 1)
@@ -88,7 +90,7 @@ endmacro()
 
 # Adds flags to the link rules of a language, after those of the target; also in CMake's checks.
 macro(_tpc_add_link_flags language flags)
-  foreach(_tpc_rule LINK_EXECUTABLE CREATE_SHARED_LIBRARY CREATE_SHARED_MODULE)
+  foreach(_tpc_rule IN LISTS _tpc_link_rules)
     string(REPLACE "<LINK_FLAGS>" "<LINK_FLAGS> ${flags}"
       CMAKE_${language}_${_tpc_rule} "${CMAKE_${language}_${_tpc_rule}}")
   endforeach()
@@ -165,7 +167,7 @@ endmacro()
 macro(_tpc_link_when_needed)
   if(EXISTS "${_tpc_relink}")
     foreach(_tpc_language ${ARGN})
-      foreach(_tpc_rule LINK_EXECUTABLE CREATE_SHARED_LIBRARY CREATE_SHARED_MODULE)
+      foreach(_tpc_rule IN LISTS _tpc_link_rules)
         string(PREPEND CMAKE_${_tpc_language}_${_tpc_rule} "\"${_tpc_relink}\" ")
       endforeach()
     endforeach()
@@ -177,7 +179,7 @@ macro(_tpc_name_compiler language)
   # Keeps what CMake adds to the name of the compiler for another machine.
   if(NOT CMAKE_SYSROOT AND NOT CMAKE_${language}_COMPILER_TARGET
       AND NOT CMAKE_${language}_COMPILER_ARG1)
-    foreach(_tpc_rule COMPILE_OBJECT LINK_EXECUTABLE CREATE_SHARED_LIBRARY CREATE_SHARED_MODULE)
+    foreach(_tpc_rule COMPILE_OBJECT ${_tpc_link_rules})
       set(_tpc_compiler "\"${_tpc_instead_of_${language}}\"")
       # CMake puts the launcher of a compiler before the rule, and that of a linker before the name.
       if(NOT _tpc_rule STREQUAL "COMPILE_OBJECT" AND CMAKE_${language}_LINKER_LAUNCHER)
@@ -216,7 +218,7 @@ endmacro()
 # Gives a language that the package enables later, by enable_language(), the rules of the other one:
 # CMake keeps existing rules.
 macro(_tpc_prepare_language language other)
-  foreach(_tpc_rule COMPILE_OBJECT LINK_EXECUTABLE CREATE_SHARED_LIBRARY CREATE_SHARED_MODULE)
+  foreach(_tpc_rule COMPILE_OBJECT ${_tpc_link_rules})
     string(REGEX REPLACE "(<[A-Z_]+_)${other}_" "\\1${language}_"
       CMAKE_${language}_${_tpc_rule} "${CMAKE_${other}_${_tpc_rule}}")
   endforeach()
