@@ -10,10 +10,8 @@
 #include "llvm/Support/FileSystem.h"
 #include "llvm/Support/JSON.h"
 #include "llvm/Support/MemoryBuffer.h"
-#include "llvm/Support/Path.h"
 #include "llvm/Support/xxhash.h"
 
-#include <map>
 #include <optional>
 
 using namespace llvm;
@@ -24,12 +22,16 @@ namespace tpc {
 static constexpr int64_t StateSchema = 1;
 
 namespace {
-/// What is known of a file that a link read.
+/// What a file that a link read says now.
 struct Input {
+  std::string Digest;
+  std::optional<Interface> Shared; ///< of a shared library that is linked
+};
+/// What it said then.
+struct RecordedInput {
   std::string Digest;
   std::vector<uint64_t> Undefined; ///< of a shared library of the workspace
 };
-using Inputs = std::map<std::string, Input>;
 } // namespace
 
 /// The text behind \p Option in \p Word, up to a comma of `-Wl,`.
@@ -105,12 +107,6 @@ static std::string digestOfCommand(const LinkCommandLine &Command) {
   return digest(Text);
 }
 
-/// What its processes found in the unit: the file is written anew when that
-/// differs.
-static std::string digestOfPlans(const LinkCommandLine &Command) {
-  return digestOfFile(Command.Plans + "/changed").value_or("");
-}
-
 /// The files that the linker read, from the first rule of what it lists for
 /// make; empty if that cannot be read.
 static std::vector<std::string> filesRead(StringRef Path) {
@@ -154,35 +150,33 @@ static bool isOfSystem(StringRef Path) {
   return Path.starts_with("/usr/lib") || Path.starts_with("/lib");
 }
 
-static json::Object describe(const Input &In) {
-  json::Array Undefined;
-  for (uint64_t Name : In.Undefined)
-    Undefined.push_back(utohexstr(Name));
-  json::Object Out{{"digest", In.Digest}};
-  if (!Undefined.empty())
-    Out["undefined"] = std::move(Undefined);
-  return Out;
-}
-
 /// A shared library that is linked counts by its interface alone.
 static constexpr StringRef ByInterface = "interface ";
 
-/// What is known of a file, \p IsLinked or a tool; with \p Shared, what others
-/// link of it. None of a thin archive: the linker does not list its members.
-static std::optional<Input> read(StringRef Path, bool IsLinked,
-                                 std::optional<Interface> &Shared) {
+/// What the file at \p Path says; with \p IsLinked, a shared library is known
+/// by its interface. None of a thin archive: the linker does not list its
+/// members.
+static std::optional<Input> read(StringRef Path, bool IsLinked) {
   if (IsLinked)
-    Shared = interfaceOf(Path);
-  if (!Shared) {
-    std::optional<std::string> Digest = digestOfFile(Path);
-    if (!Digest || isThinArchive(Path))
-      return std::nullopt;
-    return Input{std::move(*Digest), {}};
-  }
-  Input In{(ByInterface + utohexstr(Shared->Digest)).str(), {}};
-  if (!isOfSystem(Path))
-    In.Undefined = Shared->Undefined;
-  return In;
+    if (std::optional<Interface> Shared = interfaceOf(Path))
+      return Input{(ByInterface + utohexstr(Shared->Digest)).str(), Shared};
+  std::optional<std::string> Digest = digestOfFile(Path);
+  if (!Digest || isThinArchive(Path))
+    return std::nullopt;
+  return Input{std::move(*Digest), std::nullopt};
+}
+
+static json::Object describe(StringRef Path, const Input &In) {
+  json::Array Undefined;
+  if (In.Shared && !isOfSystem(Path))
+    append_range(Undefined, In.Shared->Undefined);
+  return json::Object{{"digest", In.Digest},
+                      {"undefined", std::move(Undefined)}};
+}
+
+static bool fromJSON(const json::Value &V, RecordedInput &In, json::Path P) {
+  json::ObjectMapper O(V, P);
+  return O && O.map("digest", In.Digest) && O.map("undefined", In.Undefined);
 }
 
 static bool isListed(const std::vector<uint64_t> &Sorted, uint64_t Name) {
@@ -193,30 +187,21 @@ static bool isListed(const std::vector<uint64_t> &Sorted, uint64_t Name) {
 /// need more than before if another one has it: the linker would find it.
 static bool areSame(const json::Object &Before) {
   std::vector<uint64_t> Needed, Defined;
+  json::Path::Root Ignored;
   for (const auto &[Path, Value] : Before) {
-    const json::Object *Known = Value.getAsObject();
-    std::optional<StringRef> Digest =
-        Known ? Known->getString("digest") : std::nullopt;
-    std::optional<Interface> Shared;
-    std::optional<Input> Now =
-        Digest ? read(Path, Digest->starts_with(ByInterface), Shared)
-               : std::nullopt;
-    if (!Now || Now->Digest != *Digest)
+    RecordedInput Known;
+    if (!fromJSON(Value, Known, Ignored))
       return false;
-    if (!Shared)
+    std::optional<Input> Now =
+        read(Path, StringRef(Known.Digest).starts_with(ByInterface));
+    if (!Now || Now->Digest != Known.Digest)
+      return false;
+    if (!Now->Shared)
       continue;
-    append_range(Defined, Shared->Defined);
-    std::vector<uint64_t> Earlier;
-    if (const json::Array *Names = Known->getArray("undefined"))
-      for (const json::Value &Name : *Names) {
-        uint64_t Hash;
-        if (!to_integer(Name.getAsString().value_or(""), Hash, 16))
-          return false;
-        Earlier.push_back(Hash);
-      }
-    for (uint64_t Name : Now->Undefined)
-      if (!isListed(Earlier, Name))
-        Needed.push_back(Name);
+    append_range(Defined, Now->Shared->Defined);
+    if (!isOfSystem(Path))
+      copy_if(Now->Shared->Undefined, std::back_inserter(Needed),
+              [&](uint64_t Name) { return !isListed(Known.Undefined, Name); });
   }
   llvm::sort(Defined);
   return all_of(Needed, [&](uint64_t Name) { return isListed(Defined, Name); });
@@ -256,15 +241,9 @@ bool isUpToDate(const LinkCommandLine &Command) {
   const json::Object *Files = State->getObject("inputs");
   return Files && State->getString("output") == digestOfFile(Command.Output) &&
          State->getString("command") == digestOfCommand(Command) &&
-         State->getString("plans") == digestOfPlans(Command) && areSame(*Files);
-}
-
-static void writeState(const LinkCommandLine &Command, json::Object State) {
-  // Without the file the next link is run; nothing else is lost.
-  consumeError(writeToOutput(Command.stateFile(), [&](raw_ostream &OS) {
-    OS << json::Value(std::move(State)) << '\n';
-    return Error::success();
-  }));
+         State->getString("plans") ==
+             digestOfFile(Command.planFile()).value_or("") &&
+         areSame(*Files);
 }
 
 /// True if \p Path was written after \p Start: the link may have read less.
@@ -275,7 +254,7 @@ static bool isNewer(const Twine &Path, sys::TimePoint<> Start) {
 }
 
 void recordState(const LinkCommandLine &Command, sys::TimePoint<> Start) {
-  if (isNewer(Command.Plans + "/changed", Start))
+  if (wasDelayed(Command) || isNewer(Command.planFile(), Start))
     return;
   std::vector<std::string> Files = filesRead(Command.Dependencies);
   if (Files.empty())
@@ -283,18 +262,22 @@ void recordState(const LinkCommandLine &Command, sys::TimePoint<> Start) {
   json::Object All;
   for (bool IsLinked : {true, false})
     for (const std::string &File : IsLinked ? Files : Command.Tools) {
-      std::optional<Interface> Shared;
-      std::optional<Input> In = read(File, IsLinked, Shared);
+      std::optional<Input> In = read(File, IsLinked);
       if (!In || !json::isUTF8(File) || isNewer(File, Start))
         return;
-      All[File] = describe(*In);
+      All[File] = describe(File, *In);
     }
-  writeState(Command,
-             json::Object{{"schema", StateSchema},
-                          {"output", digestOfFile(Command.Output).value_or("")},
-                          {"command", digestOfCommand(Command)},
-                          {"plans", digestOfPlans(Command)},
-                          {"inputs", std::move(All)}});
+  const json::Value State =
+      json::Object{{"schema", StateSchema},
+                   {"output", digestOfFile(Command.Output).value_or("")},
+                   {"command", digestOfCommand(Command)},
+                   {"plans", digestOfFile(Command.planFile()).value_or("")},
+                   {"inputs", std::move(All)}};
+  // Without the file the next link is run; nothing else is lost.
+  consumeError(writeToOutput(Command.stateFile(), [&](raw_ostream &OS) {
+    OS << State << '\n';
+    return Error::success();
+  }));
 }
 
 } // namespace tpc

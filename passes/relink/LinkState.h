@@ -16,7 +16,7 @@ struct LinkCommandLine {
   std::vector<std::string> Words;
   std::string Output, Manifest, StaticInfo, Plans;
   std::string Dependencies;       ///< where the linker lists what it read
-  std::vector<std::string> Tools; ///< files that only the passes read
+  std::vector<std::string> Tools; ///< the linker, the passes, and their files
 
   /// True if this file knows all that the command reads and writes.
   bool isKnown() const {
@@ -25,6 +25,8 @@ struct LinkCommandLine {
   }
   /// The file with the state of the last link.
   std::string stateFile() const { return Manifest + ".state"; }
+  /// The file that is written anew when other plans are about the unit.
+  std::string planFile() const { return Plans + "/changed"; }
 };
 
 LinkCommandLine readCommand(llvm::ArrayRef<std::string> Words);
@@ -32,8 +34,8 @@ LinkCommandLine readCommand(llvm::ArrayRef<std::string> Words);
 /// True if the last run of \p Command left what another would.
 bool isUpToDate(const LinkCommandLine &Command);
 
-/// Records a run of \p Command that began at \p Start and succeeded, unless
-/// something that it read has changed since.
+/// Records a run of \p Command that began at \p Start and succeeded, unless it
+/// is to be run again, or something that it read has changed since.
 void recordState(const LinkCommandLine &Command, llvm::sys::TimePoint<> Start);
 
 } // namespace tpc
