@@ -4,8 +4,10 @@
 #include "support/Budget.h"
 #include "support/Functions.h"
 
+#include "llvm/ADT/SetVector.h"
 #include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/IR/InstIterator.h"
+#include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Operator.h"
 #include "llvm/Support/CommandLine.h"
 
@@ -36,9 +38,11 @@ static cl::opt<unsigned>
                         "tell whether the address of a local escapes"));
 
 namespace {
-/// Where the address of a local, or an argument, goes.
+/// What happens to a local, or to what an argument points to.
 struct Flow {
-  bool Escapes = false; ///< stored, returned, or known to a library
+  bool Escapes = false; ///< its address: stored, returned, known to a library
+  bool Holds = false;   ///< a pointer is stored into it
+  bool Copied = false;  ///< by memcpy
   SmallVector<const Argument *, 4> To;
 };
 } // namespace
@@ -78,6 +82,10 @@ static Flow flowOf(const Value &Pointer, const CallGraphResult &Calls,
       else if (isa<ReturnInst>(User) ||
                (isa<StoreInst>(User) && U.getOperandNo() == 0))
         Out.Escapes = true;
+      else if (const auto *Store = dyn_cast<StoreInst>(User))
+        Out.Holds |= Store->getValueOperand()->getType()->isPointerTy();
+      else if (const auto *Copy = dyn_cast<MemTransferInst>(User))
+        Out.Copied |= &U == &Copy->getRawSourceUse();
       else if (Call && Call->isArgOperand(&U)) {
         if (!Calls.callees(*Call).empty())
           Pass(*Call, Call->getArgOperandNo(&U));
@@ -89,21 +97,39 @@ static Flow flowOf(const Value &Pointer, const CallGraphResult &Calls,
   return Out;
 }
 
+/// Adds to \p Found the locals that are passed as an argument in it, and the
+/// arguments.
+static void
+addPassed(const DenseMap<const Argument *, SmallVector<const Value *, 4>> &As,
+          SetVector<const Value *> &Found) {
+  for (size_t N = 0; N < Found.size(); ++N)
+    if (const auto *Arg = dyn_cast<Argument>(Found[N]))
+      if (auto It = As.find(Arg); It != As.end())
+        Found.insert(It->second.begin(), It->second.end());
+}
+
 /// A local escapes if its address is stored or returned, by its function or by
 /// one that it is passed to, or if a library can call its virtual functions. An
 /// argument leads to the locals that are passed as it, so passing alone makes
 /// no unknown pointer.
+///
+/// Pointers in memory are not followed through memcpy. What a copy holds, such
+/// as a lambda in a function object, is found by its class; so a local that
+/// pointers are stored into, and that is copied, counts as escaped.
 void Aliases::findEscaped(Module &M, const CallGraphResult &Calls,
                           CalledBack &Back) {
-  DenseMap<const Argument *, SmallVector<const Value *, 4>> From;
-  SmallVector<const Value *, 0> Work;
+  DenseMap<const Argument *, SmallVector<const Value *, 4>> As;
+  SetVector<const Value *> Escaping, Holding, Copied;
   auto Add = [&](const Value &Pointer) {
     Flow Of = flowOf(Pointer, Calls, Back);
     if (Of.Escapes)
-      Work.push_back(&Pointer);
-    else
-      for (const Argument *To : Of.To)
-        From[To].push_back(&Pointer);
+      Escaping.insert(&Pointer);
+    if (Of.Holds)
+      Holding.insert(&Pointer);
+    if (Of.Copied)
+      Copied.insert(&Pointer);
+    for (const Argument *To : Of.To)
+      As[To].push_back(&Pointer);
   };
   for (Function &F : definedFunctions(M)) {
     if (Budget::isSpent())
@@ -115,14 +141,13 @@ void Aliases::findEscaped(Module &M, const CallGraphResult &Calls,
       if (isa<AllocaInst>(&I))
         Add(I);
   }
-  while (!Work.empty()) {
-    const Value *Pointer = Work.pop_back_val();
-    if (!Escaped.insert(Pointer).second)
-      continue;
-    if (const auto *Arg = dyn_cast<Argument>(Pointer))
-      if (auto It = From.find(Arg); It != From.end())
-        append_range(Work, It->second);
-  }
+  addPassed(As, Holding);
+  addPassed(As, Copied);
+  for (const Value *Pointer : Copied)
+    if (Holding.contains(Pointer))
+      Escaping.insert(Pointer);
+  addPassed(As, Escaping);
+  Escaped.insert(Escaping.begin(), Escaping.end());
 }
 
 bool Aliases::isReachable(const Location &L) const {
