@@ -122,8 +122,10 @@ void Aliases::findEscaped(Module &M, const CallGraphResult &Calls,
   SetVector<const Value *> Escaping, Holding, Copied;
   auto Add = [&](const Value &Pointer) {
     Flow Of = flowOf(Pointer, Calls, Back);
-    if (Of.Escapes)
+    if (Of.Escapes) {
       Escaping.insert(&Pointer);
+      return;
+    }
     if (Of.Holds)
       Holding.insert(&Pointer);
     if (Of.Copied)
