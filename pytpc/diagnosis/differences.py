@@ -20,7 +20,7 @@ from pytpc.base.columns import Int64s
 from pytpc.base.wording import listed
 from pytpc.diagnosis.misspelt import with_alike
 from pytpc.diagnosis.question import WINDOW_S
-from pytpc.diagnosis.ranking.other_values import thresholds_of
+from pytpc.diagnosis.ranking.known_good import thresholds_of
 from pytpc.diagnosis.ranking.summarised import with_summarised
 from pytpc.diagnosis.results.differences import (
     CodeComparison,

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from mission_samples import comparison, events, ns, static_info
 
+from pytpc.diagnosis.ranking.known_good import UNCHANGED, of_change, of_changes, of_references
 from pytpc.diagnosis.ranking.mark_evidence import (
     PATIENCE_LOG,
     PATIENCE_SIGMA,
@@ -19,13 +20,7 @@ from pytpc.diagnosis.ranking.mark_evidence import (
     marked,
     reaction,
 )
-from pytpc.diagnosis.ranking.other_values import (
-    UNCHANGED,
-    diagnose_replayed,
-    of_change,
-    of_changes,
-    of_references,
-)
+from pytpc.diagnosis.ranking.other_values import diagnose_replayed
 from pytpc.diagnosis.ranking.posterior import (
     MARKS_I,
     MARKS_II,

@@ -6,15 +6,9 @@ import numpy as np
 import pytest
 from mission_samples import comparison, events, key, ns, static_info
 
-from pytpc.diagnosis.ranking.other_values import (
-    ACQUITTED,
-    UNCHANGED,
-    before_changes,
-    diagnose_replayed,
-    of_good_run,
-    replayed,
-    turns,
-)
+from pytpc.diagnosis.ranking.known_good import UNCHANGED, before_changes, of_good_run
+from pytpc.diagnosis.ranking.other_values import diagnose_replayed
+from pytpc.diagnosis.ranking.replayed_outcomes import ACQUITTED, replayed, turns
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.recording.marks import Mark

@@ -9,7 +9,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pytpc.diagnosis.ranking.other_values import is_other, of_good_run
+from pytpc.diagnosis.ranking.known_good import of_good_run
+from pytpc.diagnosis.ranking.replayed_outcomes import is_other
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.recording.parameter_change import Change
