@@ -230,6 +230,10 @@ def test_flights_are_the_reference_and_each_treatment_with_both_seeds(tmp_path, 
     found = flights_of(example)
     assert [one.label for one in found] == [
         "reference/robot",
+        "good/robot/seed-11",
+        "good/robot/seed-12",
+        "good/robot/seed-13",
+        "good/robot/seed-14",
         "missions/robot/clean/seed-1",
         "missions/robot/clean/seed-2",
         "missions/robot/fault_x/seed-1",
@@ -237,7 +241,7 @@ def test_flights_are_the_reference_and_each_treatment_with_both_seeds(tmp_path, 
         "missions/robot/type1_b/seed-1",
         "missions/robot/type1_b/seed-2",
     ]
-    reference, *missions = found
+    reference, missions = found[0], found[5:]
     assert (reference.seed, reference.half, reference.settings()) == (0, None, {})
     # Nobody looks on twice with the same eyes.
     assert len({one.people for one in found}) == len(found)

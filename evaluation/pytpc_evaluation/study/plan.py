@@ -23,14 +23,17 @@ from pytpc_evaluation.treatment import Treatment
 
 Half = Literal["tuning", "held-back"]
 HALVES: tuple[Half, ...] = ("held-back", "tuning")
-Kind = Literal["mission", "reference", "suggested"]
+Kind = Literal["mission", "reference", "good", "suggested"]
 
 SEEDS = (1, 2)
 REFERENCE_SEED = 0
+GOOD_SEEDS = (11, 12, 13, 14)
+"""Of the good runs with other settings than any mission's: clean ones, with decoys of their own."""
 CLEAN = "clean"
 _FOLDERS: Mapping[Kind, str] = {
     "mission": "missions",
     "reference": "reference",
+    "good": "good",
     "suggested": "suggested",
 }
 _QUICK_SEEDS = (1,)
@@ -54,7 +57,7 @@ class Setting:
 class Flight:
     """One flight of the study.
 
-    ``changes`` are newest last, the treatment's own among them. ``half`` is None for a reference.
+    ``changes`` are newest last, the treatment's own among them. ``half`` is None for a good run.
     ``suggested`` is what is set in a flight that tries a suggestion.
     """
 
@@ -68,9 +71,11 @@ class Flight:
 
     @property
     def name(self) -> str:
-        """``water_sampler/clean/seed-1``; a reference is only called after its system."""
+        """``water_sampler/clean/seed-1``; a good run is only called after its system and seed."""
         if self.kind == "reference":
             return self.example.name
+        if self.kind == "good":
+            return f"{self.example.name}/seed-{self.seed}"
         return f"{self.example.name}/{self.treatment.name}/seed-{self.seed}"
 
     @property
@@ -198,6 +203,11 @@ class FlightSelection:
             raise InputError(f"there is no system {unknown[0]}, but {there}")
         return [one for one in known if not names or one.name in names]
 
+    @property
+    def is_part(self) -> bool:
+        """Whether not all missions of a robot are wanted."""
+        return bool(self.treatments or self.seeds or self.quick)
+
     def has(self, treatment: Treatment, seed: int) -> bool:
         """Whether a mission is among them."""
         names = self.treatments or (_QUICK if self.quick else ())
@@ -220,7 +230,9 @@ def check_treatments(selection: FlightSelection, examples: Sequence[Example]) ->
 
 
 def flights_of(example: Example, selection: FlightSelection | None = None) -> list[Flight]:
-    """The flights of a system: the reference, then the missions by treatment and seed.
+    """The flights of a system: the good runs, then the missions by treatment and seed.
+
+    If only some missions are wanted, the reference is the only good run.
 
     Args:
         example: the robot.
@@ -247,4 +259,9 @@ def flights_of(example: Example, selection: FlightSelection | None = None) -> li
         if chosen.has(treatment, seed)
     ]
     clean = example.treatment(CLEAN)
-    return [Flight("reference", example, clean, REFERENCE_SEED, None), *flights]
+    good = [
+        Flight("good", example, clean, seed, None, drawn_changes(example.name, clean, seed, among))
+        for seed in GOOD_SEEDS
+        if not chosen.is_part
+    ]
+    return [Flight("reference", example, clean, REFERENCE_SEED, None), *good, *flights]
