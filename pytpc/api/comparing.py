@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -22,6 +22,8 @@ from pytpc.recording.parameter_values import ParameterValues
 from pytpc.ros.graphs import values_at
 from pytpc.ros.mission_run import BAG_FILE, MCAP_FILE
 from pytpc.static.builds import Build, build_of
+from pytpc.static.other_builds import keys_in, renamed
+from pytpc.static.parameters import base_key
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.origins import PARAMS_FILE, read_origins
 from pytpc.values.recording import is_of_ros, params_file, read_parameters
@@ -82,6 +84,34 @@ class RecordedRun:
             return RunValues(self.name, self.recording)
         places = {name: origin.words() for name, origin in read_origins(self.source).items()}
         return RunValues(self.name, self.recording, values, places)
+
+    def in_build(self, static_info: StaticInfo) -> RecordedRun:
+        """The run with the keys of a build, if it was recorded with another one.
+
+        What this build does not have keeps its key, and counts nowhere.
+        """
+        if self.static_file is None or set(self._keys) <= static_info.comparisons.keys():
+            return self
+        try:
+            own = StaticInfo.load(self.static_file)
+        except TpcError:
+            return self
+        names = keys_in(static_info, own)
+        recording = self.recording
+        events, summaries = recording.events, recording.summaries
+        said = [replace(one, key=renamed((one.key,), names)[0]) for one in recording.names]
+        moved = replace(
+            recording,
+            events=replace(events, keys=renamed(events.keys, names)),
+            summaries=replace(summaries, keys=renamed(summaries.keys, names)),
+            names=tuple(sorted(said)),
+        )
+        return replace(self, recording=moved)
+
+    @property
+    def _keys(self) -> Iterator[str]:
+        recording = self.recording
+        return map(base_key, (*recording.events.keys, *recording.summaries.keys))
 
     @cached_property
     def static_file(self) -> Path | None:

@@ -45,8 +45,9 @@ REFERENCE = click.option(
     type=PATH,
     multiple=True,
     metavar="RECORDING",
-    help="A good run of the same robot; may be repeated, the last one last. What differs from it is"
-    " shown first, and a parameter that kept its value is unlikely to be the cause.",
+    help="A good run of the same robot, or a PROFILE of them by `learn`; may be repeated, the last"
+    " one last. What differs is shown first, and a parameter that kept its value is unlikely to be"
+    " the cause.",
 )
 
 

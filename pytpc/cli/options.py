@@ -22,6 +22,7 @@ from pytpc.cli.lines import say
 from pytpc.diagnosis.question import WINDOW_S, Question, Types
 from pytpc.recording.faults import faults_of
 from pytpc.recording.mission import Recording
+from pytpc.recording.profile import LEARNED_FILE, is_profile, read_learned, runs_in
 from pytpc.ros.earlier_runs import last_unmarked_run
 from pytpc.static.static_info import StaticInfo
 
@@ -177,21 +178,38 @@ def offer_good_run(mission: Path) -> None:
 def good_runs(sources: Sequence[Path], static: StaticInfo) -> list[RecordedRun]:
     """Read the good runs that ``--reference`` names, each once for all missions.
 
-    Of each that has marks a line warns.
+    A profile of ``pytpc learn`` stands for its runs. Of each run that has marks a line warns.
 
     Raises:
-        InputError: one cannot be read, or is of another build.
+        InputError: one cannot be read, or its reports are of no comparison of this build.
     """
     read: dict[Path, RecordedRun] = click.get_current_context().meta.setdefault(_GOOD, {})
-    for source in sources:
+    found = []
+    for source in _with_learned(sources):
         if source not in read:
             read[source] = RecordedRun(recording_of(source), source)
-            _warn_of_marks(source, read[source].recording)
-        check_reports(read[source].recording, static, source)
-    return [read[source] for source in sources]
+            warn_of_marks(source, read[source].recording)
+        found.append(read[source].in_build(static))
+        check_reports(found[-1].recording, static, source)
+    return found
 
 
-def _warn_of_marks(source: Path, recording: Recording) -> None:
+def _with_learned(sources: Sequence[Path]) -> list[Path]:
+    """The recordings, with the runs of a profile in its place."""
+    found: list[Path] = []
+    for source in sources:
+        if not is_profile(source):
+            found.append(source)
+            continue
+        runs = runs_in(source)
+        if not runs:
+            raise InputError("no good run in this profile; add one with `pytpc learn`", source)
+        found += [source / run.folder for run in runs]
+    return found
+
+
+def warn_of_marks(source: Path, recording: Recording) -> None:
+    """Warn if somebody saw errors in what is taken for a good run."""
     if recording.marks:
         warn(
             f"{plain(str(source))}: has {many(len(recording.marks), 'mark')}, so somebody saw"
@@ -216,16 +234,30 @@ def asked_mission(
 def refuse_itself(good: Sequence[RecordedRun], mission: Recording) -> None:
     """Refuse the mission itself as its good run, whatever the path, the format or the copy.
 
+    Learned, it has the times of the mission.
+
     Raises:
         InputError: both have the same reports.
     """
     for run in good:
-        if same_reports(run.recording, mission):
+        if same_reports(run.recording, mission) or _is_learned_from(run, mission):
             raise InputError(
                 f"has the same reports as the mission {plain(mission.name)} itself; give a"
                 " recording of a good run",
                 run.source,
             )
+
+
+def _is_learned_from(run: RecordedRun, mission: Recording) -> bool:
+    if run.source is None or not (run.source / LEARNED_FILE).is_file():
+        return False
+    learned = read_learned(run.source / LEARNED_FILE)
+    reports = len(mission.events) + len(mission.summaries)
+    return (learned.start_ns, learned.end_ns, learned.reports) == (
+        mission.start_ns,
+        mission.end_ns,
+        reports,
+    )
 
 
 def warn_plainly(line: str) -> None:

@@ -1,0 +1,93 @@
+"""Which comparison of this build is one of another build, whose keys may differ.
+
+A key has the line and the column in it, so a line that is added above a comparison changes it.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Mapping
+from typing import NamedTuple
+
+from pytpc.static.link_unit import Comparison, LinkUnit
+from pytpc.static.parameters import base_key
+from pytpc.static.static_info import StaticInfo
+
+
+class _Placed(NamedTuple):
+    unit: LinkUnit
+    found: Comparison
+
+
+def keys_in(here: StaticInfo, there: StaticInfo) -> dict[str, str]:
+    """The key in this build of each comparison of another build that has another one here.
+
+    Two are the same if they compare the same parameter in the same way in the same function. If a
+    function has several of these, they are told apart by their order, or, if their number differs,
+    by their source line. What is still not clear is left out.
+
+    Args:
+        here: this build.
+        there: the other one.
+    """
+    new = _without(here, there.comparisons.keys())
+    old = _without(there, here.comparisons.keys())
+    found: dict[str, str] = {}
+    for place in (_in_function, _in_file):
+        free = _grouped([one for one in new if one.found.key not in found.values()], place)
+        for alike, left in _grouped([o for o in old if o.found.key not in found], place).items():
+            found |= _paired(left, free.get(alike, []))
+    return found
+
+
+def _without(static: StaticInfo, known: Iterable[str]) -> list[_Placed]:
+    skipped = set(known)
+    return [
+        _Placed(unit, one)
+        for unit in static.units
+        for one in unit.comparisons
+        if one.key not in skipped
+    ]
+
+
+def _grouped(
+    every: Iterable[_Placed], place: Callable[[_Placed], tuple[object, ...]]
+) -> Mapping[tuple[object, ...], list[_Placed]]:
+    groups = defaultdict(list)
+    for one in sorted(every, key=lambda one: (one.found.lineno, one.found.column, one.found.key)):
+        groups[place(one)].append(one)
+    return groups
+
+
+def _in_function(one: _Placed) -> tuple[object, ...]:
+    return (*_in_file(one), one.found.function)
+
+
+def _in_file(one: _Placed) -> tuple[object, ...]:
+    unit, found = one
+    own = found.source or found.name
+    return unit.package, unit.link_unit, found.file, own, found.relation, found.type
+
+
+def _paired(old: list[_Placed], new: list[_Placed]) -> dict[str, str]:
+    if len(old) == len(new):
+        return {o.found.key: n.found.key for o, n in zip(old, new, strict=True)}
+    by_line: dict[str | None, list[_Placed]] = defaultdict(list)
+    for one in new:
+        by_line[one.found.source_code].append(one)
+    lines = [one.found.source_code for one in old]
+    return {
+        one.found.key: by_line[line][0].found.key
+        for one, line in zip(old, lines, strict=True)
+        if line is not None and lines.count(line) == 1 and len(by_line[line]) == 1
+    }
+
+
+def renamed(keys: Iterable[str], names: Mapping[str, str]) -> tuple[str, ...]:
+    """The keys of a table under the names of this build; those of instances keep their number.
+
+    >>> renamed(["a", "b#2", "c"], {"a": "x", "b": "y"})
+    ('x', 'y#2', 'c')
+    """
+    bases = [(key, base_key(key)) for key in keys]
+    return tuple(names.get(base, base) + key[len(base) :] for key, base in bases)
