@@ -6,6 +6,7 @@
 
 #include "llvm/ADT/SetVector.h"
 #include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/Analysis/ValueTracking.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Operator.h"
@@ -41,8 +42,8 @@ namespace {
 /// What happens to a local, or to what an argument points to.
 struct Flow {
   bool Escapes = false; ///< its address: stored, returned, known to a library
-  bool Holds = false;   ///< a pointer is stored into it
-  bool Copied = false;  ///< by memcpy
+  bool Holds = false;   ///< a pointer to an object is stored into it
+  bool Copied = false;  ///< a part of it is the source of a memcpy or memmove
   SmallVector<const Argument *, 4> To;
 };
 } // namespace
@@ -53,6 +54,14 @@ static bool isCalledBack(const CallBase &Call, const Use &Arg,
                          CalledBack &Back) {
   const CalledBack::Callable *Object = Back.handedAs(Call, Arg);
   return Object && (Object->Unknown || !Object->Virtual.empty());
+}
+
+/// True if the pointer \p V may lead to an object of the program: it is neither
+/// null nor that of a class to its virtual functions.
+static bool isOfObject(const Value &V) {
+  if (!V.getType()->isPointerTy() || isa<ConstantPointerNull>(V))
+    return false;
+  return !getUnderlyingObject(&V)->getName().starts_with("_ZTV");
 }
 
 static Flow flowOf(const Value &Pointer, const CallGraphResult &Calls,
@@ -83,7 +92,7 @@ static Flow flowOf(const Value &Pointer, const CallGraphResult &Calls,
                (isa<StoreInst>(User) && U.getOperandNo() == 0))
         Out.Escapes = true;
       else if (const auto *Store = dyn_cast<StoreInst>(User))
-        Out.Holds |= Store->getValueOperand()->getType()->isPointerTy();
+        Out.Holds |= isOfObject(*Store->getValueOperand());
       else if (const auto *Copy = dyn_cast<MemTransferInst>(User))
         Out.Copied |= &U == &Copy->getRawSourceUse();
       else if (Call && Call->isArgOperand(&U)) {
@@ -97,14 +106,13 @@ static Flow flowOf(const Value &Pointer, const CallGraphResult &Calls,
   return Out;
 }
 
-/// Adds to \p Found the locals that are passed as an argument in it, and the
-/// arguments.
-static void
-addPassed(const DenseMap<const Argument *, SmallVector<const Value *, 4>> &As,
-          SetVector<const Value *> &Found) {
+/// Adds to \p Found all that is passed as an argument in it, again and again.
+static void addPassed(
+    const DenseMap<const Argument *, SmallVector<const Value *, 4>> &PassedAs,
+    SetVector<const Value *> &Found) {
   for (size_t N = 0; N < Found.size(); ++N)
     if (const auto *Arg = dyn_cast<Argument>(Found[N]))
-      if (auto It = As.find(Arg); It != As.end())
+      if (auto It = PassedAs.find(Arg); It != PassedAs.end())
         Found.insert(It->second.begin(), It->second.end());
 }
 
@@ -113,12 +121,13 @@ addPassed(const DenseMap<const Argument *, SmallVector<const Value *, 4>> &As,
 /// argument leads to the locals that are passed as it, so passing alone makes
 /// no unknown pointer.
 ///
-/// Pointers in memory are not followed through memcpy. What a copy holds, such
-/// as a lambda in a function object, is found by its class; so a local that
-/// pointers are stored into, and that is copied, counts as escaped.
+/// Pointers in memory are not followed through memcpy. What a copy on the heap
+/// holds, such as a lambda in a function object, is found by its class; so a
+/// local that pointers are stored into, and a part of which is copied, counts
+/// as escaped.
 void Aliases::findEscaped(Module &M, const CallGraphResult &Calls,
                           CalledBack &Back) {
-  DenseMap<const Argument *, SmallVector<const Value *, 4>> As;
+  DenseMap<const Argument *, SmallVector<const Value *, 4>> PassedAs;
   SetVector<const Value *> Escaping, Holding, Copied;
   auto Add = [&](const Value &Pointer) {
     Flow Of = flowOf(Pointer, Calls, Back);
@@ -131,7 +140,7 @@ void Aliases::findEscaped(Module &M, const CallGraphResult &Calls,
     if (Of.Copied)
       Copied.insert(&Pointer);
     for (const Argument *To : Of.To)
-      As[To].push_back(&Pointer);
+      PassedAs[To].push_back(&Pointer);
   };
   for (Function &F : definedFunctions(M)) {
     if (Budget::isSpent())
@@ -143,12 +152,12 @@ void Aliases::findEscaped(Module &M, const CallGraphResult &Calls,
       if (isa<AllocaInst>(&I))
         Add(I);
   }
-  addPassed(As, Holding);
-  addPassed(As, Copied);
+  addPassed(PassedAs, Holding);
+  addPassed(PassedAs, Copied);
   for (const Value *Pointer : Copied)
     if (Holding.contains(Pointer))
       Escaping.insert(Pointer);
-  addPassed(As, Escaping);
+  addPassed(PassedAs, Escaping);
   Escaped.insert(Escaping.begin(), Escaping.end());
 }
 

@@ -40,7 +40,8 @@ private:
                    CalledBack &Back);
 
   LocationTypes &Types;
-  /// The locals that code elsewhere can reach without naming them.
+  /// The locals that are found by their class, because code elsewhere can reach
+  /// them without naming them.
   llvm::DenseSet<const llvm::Value *> Escaped;
 };
 
