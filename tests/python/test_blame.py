@@ -58,16 +58,16 @@ def test_other_names_of_the_same_comparisons_change_nothing_but_the_names():
     assert found[0].suspects[0].probability == pytest.approx(found[1].suspects[0].probability)
 
 
-def test_a_verdict_is_an_accusation_from_one_half_on():
-    assert said(0.5, 0.2) == "blame ~gate: 50 %; none of the parameters: 20 %"
-    assert said(0.499, 0.2) == "not sure: ~gate is likeliest (50 %); none of the parameters: 20 %"
+def test_a_verdict_is_an_accusation_from_eighty_percent_on():
+    assert said(0.8, 0.1) == "blame ~gate: 80 %; none of the parameters: 10 %"
+    assert said(0.799, 0.1) == "not sure: ~gate is likeliest (80 %); none of the parameters: 10 %"
     assert said(0.3, 0.6) == (
         "not sure: most likely none of the parameters (60 %; perhaps a fault in the code),"
         " then ~gate (30 %)"
     )
-    surest = Blame((accused(0.7),), 0.1, 3, MARKS, ())
-    assert (surest.accused, surest.confidence) == ("~gate", 0.7)
-    assert Blame((accused(0.49),), 0.1, 3, MARKS, ()).accused is None
+    surest = Blame((accused(0.9),), 0.1, 3, MARKS, ())
+    assert (surest.accused, surest.confidence) == ("~gate", 0.9)
+    assert Blame((accused(0.79),), 0.1, 3, MARKS, ()).accused is None
     nobody = Blame((), 1.0, 3, MARKS, ())
     assert (nobody.accused, nobody.confidence) == (None, 0.0)
     assert nobody.text == "not enough evidence to suspect any parameter"

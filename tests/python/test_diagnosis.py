@@ -5,9 +5,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mission_samples import comparison, events, ns, static_info
+from mission_samples import comparison, events, key, ns, static_info
 
-from pytpc.diagnosis.ranking.known_good import UNCHANGED, of_change, of_changes, of_references
+from pytpc.diagnosis.ranking.known_good import (
+    BETWEEN,
+    DEFAULT,
+    UNCHANGED,
+    of_change,
+    of_changes,
+    of_defaults,
+    of_references,
+)
 from pytpc.diagnosis.ranking.mark_evidence import (
     PATIENCE_LOG,
     PATIENCE_SIGMA,
@@ -315,15 +323,61 @@ def test_a_good_run_tells_which_threshold_is_another():
     tpcs = Tpcs.of(STATIC)
     here = events([(1, 0, 0, 1, 4), (1, 1, 0, 1, 4), (1, 2, 0, 1, 4), (2, 2, 0, 1, 5)])
     there = events([(1, 0, 0, 1, 2), (1, 1, 0, 1, 4), (1, 2, 0, 1, 4)])
-    prior = dict(zip(tpcs.names, of_references(tpcs, here, [there]), strict=True))
+    found = of_references(tpcs, here, [there])
+    prior = dict(zip(tpcs.names, found.prior, strict=True))
     assert prior["~gate"] == 0.0
     assert prior["~noisy"] == UNCHANGED
     # Nothing is known of what changed in a run, or was not compared.
     assert np.isnan([prior["~safe"], prior["~never"]]).all()
+    assert found.others == {key(0): 2.0}
     # It kept its value if one of the runs had it.
     runs = [there, events([(1, 0, 0, 1, 4)]), there]
-    gate = of_references(tpcs, here, runs)[tpcs.names.index("~gate")]
+    gate = of_references(tpcs, here, runs).prior[tpcs.names.index("~gate")]
     assert gate == UNCHANGED
+
+
+# 4 is between 2 and 7, and nearer to 2.
+def test_between_two_good_values_is_nearly_as_good():
+    tpcs = Tpcs.of(STATIC)
+    here = events([(1, 0, 0, 1, 4)])
+    runs = [events([(1, 0, 0, 1, value)]) for value in (7, 2)]
+    found = of_references(tpcs, here, runs)
+    assert found.prior[tpcs.names.index("~gate")] == BETWEEN
+    assert found.others == {key(0): 2.0}
+
+
+# Of a good run with 5 and one with 7, the nearer one is replayed: 4 is below both.
+def test_the_nearest_good_value_is_replayed():
+    here, tpcs = events([(1, 0, 0, 1, 4)]), Tpcs.of(STATIC)
+    for order in ((5, 7), (7, 5)):
+        runs = [events([(1, 0, 0, 1, value)]) for value in order]
+        assert of_references(tpcs, here, runs).others == {key(0): 5.0}
+
+
+def with_defaults(*defaults):
+    """gate, noisy and so on with these defaults; STATIC has none."""
+    known = [*STATIC.comparisons.values()]
+    changed = [replace(one, default=value) for one, value in zip(known, defaults, strict=False)]
+    return static_info(*changed, *known[len(changed) :])
+
+
+def test_a_default_in_the_code_is_known_to_be_good():
+    static = with_defaults(4, 9, None)
+    tpcs = Tpcs.of(static)
+    here = events([(1, 0, 0, 1, 4), (1, 1, 0, 1, 4), (1, 2, 0, 1, 4)])
+    found = of_defaults(static, tpcs, here)
+    names = [static.comparisons[key(number)].source for number in range(3)]
+    prior = dict(zip(tpcs.names, found.prior, strict=True))
+    assert [prior[name] for name in names[:2]] == [DEFAULT, 0.0]
+    assert np.isnan(prior[names[2]])
+    assert found.others == {key(1): 9.0}
+
+
+# The node keeps 0.1 in a float, and reports it as 0.100000001490116.
+def test_a_default_that_is_kept_in_a_float_is_the_same():
+    static = with_defaults(0.1)
+    here = events([(1, 0, 0, 1, 0.10000000149011612)])
+    assert of_defaults(static, Tpcs.of(static), here).others == {}
 
 
 def test_a_prior_moves_the_order():

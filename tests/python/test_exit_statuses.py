@@ -32,6 +32,7 @@ INPUT = "INPUT"
 RECORDINGS: Mapping[str, Sequence[str]] = {
     "convert": (INPUT, "-o", "out"),
     "diff": (str(EXAMPLE), INPUT, "--static", str(STATIC)),
+    "learn": (INPUT, "-o", "good"),
     "mark": (INPUT,),
     "marks": (INPUT,),
     "rank": (INPUT, "--static", str(STATIC)),

@@ -105,15 +105,15 @@ def test_the_tables_count_them():
 # It answers every complaint about an action, so that it does is no evidence. A good run has some.
 @pytest.mark.parametrize(("basis", "name"), [("lasting", None), ("reference", "~p0")])
 def test_a_value_that_only_stops_the_robot_accuses_nobody(basis, name):
-    blame, advice = advised(0.6, 0.2)
+    blame, advice = advised(0.8, 0.1)
     then = WhatIf("~p0", 1, 1, 1, 9, 1, 3, "", (), stops=True)
     first = replace(advice[0], remedy=replace(advice[0].remedy, basis=basis), what_if=then)
     found = Diagnosis(blame, (first, advice[1]))
     assert found.accused == name
     assert found.headline == (
-        "blame ~p0: 60 %; none of the parameters: 0 %"
+        "blame ~p0: 80 %; none of the parameters: 0 %"
         if name
-        else "not sure: ~p0 is likeliest (60 %), but the log only shows that another value would"
+        else "not sure: ~p0 is likeliest (80 %), but the log only shows that another value would"
         " stop all that it decides"
     )
     assert diagnosis_json(found)["accused"] == name

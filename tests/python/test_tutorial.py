@@ -85,8 +85,8 @@ def test_the_examples_of_diagnosing(command: str):
 
 def _weightless(line: str) -> str:
     """Without the probabilities: of the verdict, of a suspect, and in the column of the table."""
-    if re.search(r"sure: | II?: d|% that it is this one", line):
-        return re.sub(r"[ \d]\d %", ".. %", line)
+    if re.search(r"sure: |blame | II?: d|% that it is this one", line):
+        return re.sub(r"(?<=  )[ \d]\d %|\b\d{1,2} %", ".. %", line)
     return line
 
 

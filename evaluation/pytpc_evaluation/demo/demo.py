@@ -186,15 +186,13 @@ def gone_wrong(mission: TreatedMission) -> list[str]:
 def not_named(mission: TreatedMission, diagnosis: Diagnosis) -> list[str]:
     """A sentence where the changed parameter is not named; empty where it is, or nothing changed.
 
-    Beside good runs it has to be the one that is blamed, without them one of the first suspects.
+    Beside good runs it has to be the first suspect, without them one of the first ones.
     """
     parameter = mission.treatment.parameter
     if parameter is None or not mission.judged:
         return []
-    if diagnosis.differences is not None:
-        named = [] if diagnosis.accused is None else [diagnosis.accused]
-    else:
-        named = [one.parameter for one in diagnosis.blame.suspects[:FIRST]]
+    first = FIRST if diagnosis.differences is None else 1
+    named = [one.parameter for one in diagnosis.blame.suspects[:first]]
     if any(same_parameter(parameter, name) for name in named):
         return []
     return [f"{mission.treatment.name}: {parameter} is not named, but {diagnosis.headline}"]

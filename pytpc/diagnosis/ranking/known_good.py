@@ -1,4 +1,4 @@
-"""Which values are known to be good: of good runs, and from before changes.
+"""Which values are known to be good: of good runs, from before changes, and defaults in the code.
 
 Each source gives a prior, the log odds of each parameter to be the cause, and the other thresholds
 of those that differ, which are replayed (`pytpc.diagnosis.ranking.replayed_outcomes`).
@@ -7,7 +7,8 @@ of those that differ, which are replayed (`pytpc.diagnosis.ranking.replayed_outc
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,6 +27,27 @@ UNCHANGED = -12.0
 record may be wrong, and the robot may be at another place. The size of a change does not count:
 what is a large change differs from one parameter to the next."""
 
+BETWEEN = -3.0
+"""The same of one whose value lies between those of two good runs: what the robot did with either
+is known, and a threshold acts in one direction."""
+
+DEFAULT = -3.0
+"""The same of one that has the default of its code. Not as little as ``UNCHANGED``, because a
+default may not fit to this robot."""
+
+_CLOSE = 1e-6
+"""A default that the code computes, or keeps in a float, is the threshold up to this part."""
+
+
+class KnownGood(NamedTuple):
+    """``prior`` float64[p] are the log odds of each parameter; nan where nothing is known of it.
+
+    ``others`` is the other threshold of each comparison whose parameter differs, by key.
+    """
+
+    prior: Floats
+    others: Mapping[str, float]
+
 
 def before_changes(
     static_info: StaticInfo, changes: Iterable[tuple[str, float]]
@@ -38,18 +60,22 @@ def before_changes(
     named = [(key, one) for key, one in static_info.thresholds.items() if one.source is not None]
     every = ByParameter(named, lambda item: item[1].source or "")
     for parameter, old in changes:
-        for key, comparison in every.meant(parameter):
-            unit = static_info.unit_of(key)
-            if is_text(comparison, unit):
-                continue
-            try:
-                tree = kept_as(tree_of(comparison), read_type(comparison, unit))
-            except NoUnitError:
-                continue
-            threshold = evaluate(tree, old)
+        for key, _ in every.meant(parameter):
+            threshold = _threshold(static_info, key, old)
             if not math.isnan(threshold):
                 found[key] = threshold
     return found
+
+
+def _threshold(static_info: StaticInfo, key: str, value: float) -> float:
+    """That of a comparison with this value of its parameter; nan if the way there is not known."""
+    comparison, unit = static_info.comparisons[key], static_info.unit_of(key)
+    if is_text(comparison, unit):
+        return math.nan
+    try:
+        return evaluate(kept_as(tree_of(comparison), read_type(comparison, unit)), value)
+    except NoUnitError:
+        return math.nan
 
 
 def of_good_run(tpcs: Tpcs, events: Events, reference: Events) -> dict[str, float]:
@@ -69,22 +95,52 @@ def of_changes(names: Sequence[str], changes: Iterable[Change]) -> Floats:
     return prior
 
 
-def of_references(tpcs: Tpcs, events: Events, references: Sequence[Events]) -> Floats:
-    """float64[p], the log odds of each parameter, by the thresholds of good runs.
+def of_references(tpcs: Tpcs, events: Events, references: Sequence[Events]) -> KnownGood:
+    """What the thresholds of good runs say.
 
-    A parameter kept its value if one of the runs had it. Nothing is known of one that changed
-    during a run, or was not compared in the mission and in a good run: nan. Without other knowledge
-    it gets half of ``UNCHANGED``.
+    A parameter kept its value if one of the runs had it. Otherwise the other threshold is the
+    nearest one of a good run. Nothing is known of a parameter that changed during a run, or was not
+    compared in the mission and in a good run.
     """
     here = thresholds_of(events, tpcs)
-    prior: dict[str, float] = {}
     there = [thresholds_of(one, tpcs) for one in references]
+    prior: dict[str, float] = {}
+    others: dict[str, float] = {}
     for code, name in enumerate(tpcs.parameters):
-        known = [float(one[code]) for one in there if not np.isnan(one[code])]
-        if np.isnan(here[code]) or not known:
+        now, known = (
+            float(here[code]),
+            [float(one[code]) for one in there if one[code] == one[code]],
+        )
+        if math.isnan(now) or not known:
             continue
-        kept = min(of_change(then, float(here[code])) for then in known)
+        least = BETWEEN if min(known) < now < max(known) else 0.0
+        kept = min(least, *(of_change(then, now) for then in known))
         prior[name] = max(prior.get(name, UNCHANGED), kept)
+        if kept != UNCHANGED:
+            others[tpcs.keys[code]] = min(known, key=lambda then: (abs(then - now), then))
+    return KnownGood(_by_name(tpcs, prior), others)
+
+
+def of_defaults(static_info: StaticInfo, tpcs: Tpcs, events: Events) -> KnownGood:
+    """What the defaults in the code say: of ROS 1's ``param``, of ROS 2's declarations."""
+    here = thresholds_of(events, tpcs)
+    prior: dict[str, float] = {}
+    others: dict[str, float] = {}
+    for code, (key, name) in enumerate(zip(tpcs.keys, tpcs.parameters, strict=True)):
+        now, default = float(here[code]), static_info.comparisons[key].default
+        if math.isnan(now) or default is None or isinstance(default, str):
+            continue
+        then = _threshold(static_info, key, float(default))
+        if math.isnan(then):
+            continue
+        same = math.isclose(then, now, rel_tol=_CLOSE)
+        prior[name] = max(prior.get(name, DEFAULT), DEFAULT if same else 0.0)
+        if not same:
+            others[key] = then
+    return KnownGood(_by_name(tpcs, prior), others)
+
+
+def _by_name(tpcs: Tpcs, prior: Mapping[str, float]) -> Floats:
     return np.array([prior.get(name, np.nan) for name in tpcs.names])
 
 

@@ -44,8 +44,12 @@ LEAST = 0.001
 SLOPE_S = 2.0
 """How long a value's slope is measured, to extrapolate it."""
 
-ACQUITTED = -4.0
-"""The log odds of a parameter whose other value would have turned nothing before the marks."""
+ACQUITTED = -8.0
+"""The log odds of a parameter whose other value would have turned nothing before the marks: less
+than "none of them", even if nothing else differs."""
+
+LEAST_CHARGE = -4.0
+"""The least of one whose other value would have turned something."""
 
 
 def replayed(
@@ -76,7 +80,7 @@ def replayed(
         turned = is_other(static_info.thresholds[key].relation, stream, other)
         charge = ACQUITTED
         if np.any(turned & (stream.times <= marks.times.max())):
-            charge = max(charge, _charge(stream, turned, other, (marks, wait), odds))
+            charge = max(charge, LEAST_CHARGE, _charge(stream, turned, other, (marks, wait), odds))
         found[name] = max(charge, found.get(name, ACQUITTED))
     return found
 
@@ -95,7 +99,7 @@ def _charge(
     marks, wait = evidence
     begins, lengths = turns(stream, turned, other)
     early = begins <= marks.firsts.max()
-    acted = ACQUITTED
+    acted = LEAST_CHARGE
     if early.any():
         weights = np.maximum(1.0 - 1.0 / (1.0 + (lengths[early] / MOMENT_S) ** 2), LEAST)
         acted = caused(begins[early], weights, wait.seconds, marks) - any_time(wait.seconds, marks)
