@@ -61,7 +61,7 @@ _GROUPED = {
         "completion": ("completion_commands", "Print the shell's completion script for pytpc."),
     },
     RECORDINGS: {
-        "marks": ("mark_commands", "List the marks of a recording, or add and remove some."),
+        "marks": ("marks_commands", "List the marks of a recording, or add and remove some."),
         "learn": ("learn_commands", "Learn what is normal for a robot from its good runs."),
         "convert": ("convert_commands", "Convert bags, binary files, logs or CSV to Parquet."),
         "sink": ("graph_commands", "Show or change where running nodes report to."),
