@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from pytpc.recording.graph_file import read_graph
+from pytpc.recording.graph_file import read_recorded_graph
 from pytpc.recording.mission import Recording
 from pytpc.static.wiring import RunningNode, Wiring
 from pytpc.values.origins import origins_file
@@ -33,9 +33,8 @@ def wiring_of_mission(recording: Recording, source: Path | None) -> Wiring:
     if origins_file(source).is_file():
         folder = origins_file(source).parent
         nodes = _running(read_target(folder, {}, {}).nodes)
-    return Wiring(
-        nodes, recording.nodes_of, read_graph(source if source.is_dir() else source.parent)
-    )
+    graph = read_recorded_graph(source if source.is_dir() else source.parent)
+    return Wiring(nodes, recording.nodes_of, graph.topics, graph.services)
 
 
 def with_wiring(recording: Recording, source: Path | None) -> Recording:

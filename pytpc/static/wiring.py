@@ -6,12 +6,30 @@ evaluated what, and may know who published and subscribed to what.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import NamedTuple
 
 from pytpc.static.link_unit import Comparison, LinkUnit
 from pytpc.static.parameters import base_key, resolved
+
+# What TPC and ROS themselves start on a graph. Anonymous names end with numbers; a robot may have a
+# node /play_motion.
+_TOOLS = re.compile(
+    r"/(rosout|tpc_\w+|roslaunch\S*|(rviz|rqt)(_\S+)?|rosbag2_(recorder|player)"
+    r"|(record|play|rostopic|rosservice)_(\S*_)?\d+)"
+)
+
+
+def is_tool(node: str) -> bool:
+    """Whether a node of this name is no part of the robot: TPC and ROS have started it.
+
+    >>> is_tool("/record_1732871"), is_tool("/play_motion")
+    (True, False)
+    """
+    return _TOOLS.fullmatch(node) is not None
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +67,13 @@ class GraphTopic:
     subscribers: frozenset[str]
 
 
+class Connections(NamedTuple):
+    """A graph by full names: its topics, and for each service the nodes that offer it."""
+
+    topics: Mapping[str, GraphTopic]
+    services: Mapping[str, frozenset[str]]
+
+
 @dataclass(frozen=True)
 class Wiring:
     """What is known of the nodes of a robot.
@@ -57,11 +82,14 @@ class Wiring:
         nodes: those that launch files start.
         evaluated: the nodes that evaluated a comparison, by key; empty without a recording.
         topics: all topics of the graph by full name; empty if it was not recorded.
+        services: for each service of the graph the nodes that offer it, by full names; empty if
+            that was not recorded.
     """
 
     nodes: tuple[RunningNode, ...] = ()
     evaluated: Mapping[str, frozenset[str]] = field(default_factory=dict)
     topics: Mapping[str, GraphTopic] = field(default_factory=dict)
+    services: Mapping[str, frozenset[str]] = field(default_factory=dict)
 
     @cached_property
     def _by_name(self) -> dict[str, RunningNode]:

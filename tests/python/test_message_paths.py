@@ -9,11 +9,13 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner
-from mission_samples import comparison, key, link_unit
+from mission_samples import comparison, events, key, link_unit
 
+from pytpc.api.wired_robot import wiring_of_mission
 from pytpc.base.errors import InputError
 from pytpc.cli.main import main
-from pytpc.recording.graph_file import GRAPH_FILE, read_graph, write_graph
+from pytpc.recording.graph_file import GRAPH_FILE, read_graph, read_recorded_graph, write_graph
+from pytpc.recording.mission import Recording
 from pytpc.static.link_unit import Comparison, Received
 from pytpc.static.message_paths import MOST_NODES, MessagePaths, leaves, path_text, routes
 from pytpc.static.static_info import StaticInfo
@@ -165,13 +167,30 @@ def test_a_name_of_the_graph_is_not_another_topic() -> None:
 def test_the_graph_of_a_mission_is_kept(tmp_path: Path) -> None:
     topics = {"/a": GraphTopic(BOOL, frozenset({"/x", "/y"}), frozenset()), "/b": GraphTopic(
         None, frozenset(), frozenset({"/x"}))}  # fmt: skip
-    write_graph(topics, tmp_path / GRAPH_FILE)
+    services = {"/go": frozenset({"/x", "/y"})}
+    write_graph(topics, tmp_path / GRAPH_FILE, services)
 
     assert read_graph(tmp_path) == topics
     assert read_graph(tmp_path / "none") == {}
+    assert read_recorded_graph(tmp_path) == (topics, services)
+    wiring = wiring_of_mission(Recording("m", events([]), (), 0, 1), tmp_path)
+    assert (wiring.topics, wiring.services) == (topics, services)
 
 
-@pytest.mark.parametrize("text", ["[]", '{"schema": 2}', '{"schema": 1, "topics": {"/a": 1}}'])
+def test_a_graph_of_an_earlier_version_has_no_services(tmp_path: Path) -> None:
+    (tmp_path / GRAPH_FILE).write_text('{"schema": 1, "topics": {}}')
+    assert read_recorded_graph(tmp_path) == ({}, {})
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "[]",
+        '{"schema": 2}',
+        '{"schema": 1, "topics": {"/a": 1}}',
+        '{"schema": 1, "topics": {}, "services": {"/a": "/b"}}',
+    ],
+)
 def test_a_broken_graph_is_an_error(tmp_path: Path, text: str) -> None:
     (tmp_path / GRAPH_FILE).write_text(text)
     with pytest.raises(InputError, match="not the graph of a mission"):

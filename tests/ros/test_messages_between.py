@@ -14,7 +14,7 @@ from patience import PATIENCE_S
 from pytpc.api.building import analyse
 from pytpc.cli.main import main
 from pytpc.python_analysis.rules_file import load_rules
-from pytpc.recording.graph_file import read_graph
+from pytpc.recording.graph_file import read_graph, read_recorded_graph
 from pytpc.static.sources import with_source_digests
 from pytpc.static.wiring import GraphTopic
 
@@ -119,6 +119,8 @@ def test_a_recording_knows_who_spoke_to_whom(workspace: Path, mission: Path) -> 
     ]
     ends = frozenset({"/left/camera"}), frozenset({"/left/driver"})
     assert read_graph(mission)["/left/ready"] == GraphTopic("std_msgs/Float64", *ends)
+    services = read_recorded_graph(mission).services
+    assert services["/left/camera/get_loggers"] == {"/left/camera"}
     said = invoke("explain", workspace, "~limit", "--mission", mission)
     assert " ".join(said.split()).endswith(f"goes on to {PATH}")
 

@@ -20,7 +20,7 @@ from xmlrpc.server import SimpleXMLRPCRequestHandler, SimpleXMLRPCServer
 from pytpc.base.errors import RunError
 from pytpc.ros.ros1.connection import TimedSocket
 from pytpc.ros.ros1.listening import PeerServer, bind_address
-from pytpc.static.wiring import GraphTopic
+from pytpc.static.wiring import Connections, GraphTopic
 
 DEFAULT_URI = "http://localhost:11311"
 # A number over 32 bits is an OverflowError, a URI of another scheme a plain OSError.
@@ -173,8 +173,8 @@ class Master:
         answer = self.call("getSystemState")
         return SystemState(*(_names(answer, part) for part in range(3)))
 
-    def topics(self) -> dict[str, GraphTopic]:
-        """All topics with their types and nodes.
+    def connections(self) -> Connections:
+        """All topics with their types and nodes, and all services.
 
         Raises:
             RunError: the master does not answer.
@@ -186,7 +186,7 @@ class Master:
             for pair in (known if isinstance(known, list) else ())
             if isinstance(pair, list) and len(pair) == _PAIR and pair[1] != "*"
         }
-        return {
+        topics = {
             name: GraphTopic(
                 kinds.get(name),
                 frozenset(state.publishers.get(name, ())),
@@ -194,6 +194,8 @@ class Master:
             )
             for name in {*state.publishers, *state.subscribers}
         }
+        services = {name: frozenset(nodes) for name, nodes in state.services.items()}
+        return Connections(topics, services)
 
     def node_uri(self, node: str) -> str | None:
         """Where a node's slave API is; None where the master does not know the node.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import threading
 import time
 from collections.abc import Callable, Collection, Sequence
@@ -14,6 +13,7 @@ from pytpc.ros.mission_run import RecorderStatus
 from pytpc.ros.ros1.instrumented_nodes import InstrumentedNodes
 from pytpc.ros.ros1.master import Master
 from pytpc.ros.ros1.node_process import is_built_with_tpc, is_gone
+from pytpc.static.wiring import is_tool
 
 PATIENCE_S = 10.0
 _LOOK_S = 1.0
@@ -22,12 +22,6 @@ _ROSOUT = "/rosout"
 _LISTED = 3
 _LONGEST = 200
 _MOST_ASKED = 50
-# What TPC and ROS themselves start on a graph. Anonymous names end with numbers; a robot may have a
-# node /play_motion.
-_TOOLS = re.compile(
-    r"/(rosout|tpc_\w+|roslaunch\S*|(rviz|rqt)(_\S+)?"
-    r"|(record|play|rostopic|rosservice)_(\S*_)?\d+)"
-)
 
 
 class QuietNode(NamedTuple):
@@ -129,7 +123,7 @@ def robot_nodes(master: Master) -> list[str]:
     Raises:
         RunError: the master does not answer.
     """
-    return sorted(name for name in master.state().nodes if not _TOOLS.fullmatch(name))
+    return sorted(name for name in master.state().nodes if not is_tool(name))
 
 
 def gone_nodes(master: Master, names: Sequence[str], heard: Collection[str]) -> list[str]:

@@ -229,9 +229,10 @@ def _dump_at_end(env: Mapping[str, str], path: Path, stop: Stop | None) -> None:
 
 
 def _keep_graph(uri: str, out_dir: Path) -> None:
-    """Write who publishes and subscribes to what; without it only less is known of the messages."""
+    """Write who speaks to whom; without it only less is known of the messages."""
     with contextlib.suppress(TpcError):
-        write_graph(Master(uri, f"{NODE_NAME}_{os.getpid()}").topics(), out_dir / GRAPH_FILE)
+        found = Master(uri, f"{NODE_NAME}_{os.getpid()}").connections()
+        write_graph(found.topics, out_dir / GRAPH_FILE, found.services)
 
 
 def _saved(

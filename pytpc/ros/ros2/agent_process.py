@@ -20,9 +20,10 @@ from typing import IO, Any
 from pytpc.base.errors import MissingToolError, RunError
 from pytpc.ros.ros2 import interpreter
 from pytpc.ros.ros2.address import Ros2Address
+from pytpc.ros.ros2.connections import connections_of
 from pytpc.ros.ros2.discovery import Discovery
 from pytpc.ros.source import Source
-from pytpc.static.wiring import GraphTopic
+from pytpc.static.wiring import Connections
 
 AT_A_TIME = 16
 """How many nodes are asked at a time: one that hangs holds up few others."""
@@ -182,9 +183,7 @@ class Agent:
         Raises:
             RunError: the agent has ended.
         """
-        number = next(self._numbers)
-        self._answers[number] = take
-        self._send({"op": "values", "node": node, "patience": None, "id": number})
+        self._later({"op": "values", "node": node, "patience": None}, take)
 
     def set(
         self, node: str, parameters: Sequence[tuple[str, int, object]]
@@ -199,6 +198,11 @@ class Agent:
         """
         head, _ = self._call({"op": "set", "node": node, "parameters": list(parameters)})
         return [(bool(taken), str(why)) for taken, why in head["results"]]
+
+    def _later(self, head: Head, take: Take) -> None:
+        number = next(self._numbers)
+        self._answers[number] = take
+        self._send({**head, "id": number})
 
     def _call(self, head: Head) -> tuple[Head, bytes]:
         """``ask`` for what another node has to answer, by up to two calls."""
@@ -227,19 +231,24 @@ class Agent:
             raise RunError(str(answer.head["error"]))
         return answer.head, answer.body
 
-    def connections(self) -> dict[str, GraphTopic]:
-        """All topics of the graph with their nodes, without the agent.
+    def connections(self) -> Connections:
+        """All topics and services of the graph with their nodes, without the agent.
 
         Raises:
             RunError: the agent has ended.
         """
-        found: dict[str, Head] = self.ask({"op": "connections"})[0]["topics"]
-        return {
-            topic: GraphTopic(
-                one["type"], frozenset(one["publishers"]), frozenset(one["subscribers"])
-            )
-            for topic, one in found.items()
-        }
+        return connections_of(self.ask({"op": "connections"})[0])
+
+    def connections_later(self, take: Callable[[Connections | None], None]) -> None:
+        """Have ``take`` called with `connections` by another thread; None: they could not be had.
+
+        Raises:
+            RunError: the agent has ended.
+        """
+        self._later(
+            {"op": "connections"},
+            lambda head, _: take(connections_of(head) if "topics" in head else None),
+        )
 
     def drain(self) -> None:
         """Have all messages that have come to this machine be in ``poll``.

@@ -287,12 +287,13 @@ class GraphRecording:
         return self._status(closed=True), fault
 
     def keep_graph(self) -> None:
-        """Write who publishes and subscribes to what, while the nodes still run.
+        """Write who speaks to whom, while the nodes still run.
 
         Without it only less is known of the messages.
         """
         with contextlib.suppress(TpcError):
-            write_graph(self._agent.connections(), self._options.out_dir / GRAPH_FILE)
+            found = self._agent.connections()
+            write_graph(found.topics, self._options.out_dir / GRAPH_FILE, found.services)
 
     def wait_for_values(self, hurries: Callable[[], bool] = lambda: False) -> None:
         """Wait for the values of nodes that have only just been found, unless one ``hurries``."""

@@ -16,6 +16,7 @@ import time
 from typing import Any
 
 from .calls import Calls
+from .connections import services_of, topics_of
 from .message_types import class_of, definition_of
 from .pipe import TIME, Writer, read_frame
 
@@ -119,21 +120,9 @@ class Agent:
         self._writer.put({"ev": "answer", "id": head["id"]})
 
     def do_connections(self, head: Any, body: Any) -> None:
-        """Answer with all topics: their types, and the nodes that publish and subscribe to them."""
-        own = self.node.get_fully_qualified_name()
-
-        def names(ends: Any) -> Any:
-            found = {end.node_namespace.rstrip("/") + "/" + end.node_name for end in ends}
-            return sorted(name for name in found if name != own and "_UNKNOWN_" not in name)
-
-        topics = {}
-        for topic, kinds in self.node.get_topic_names_and_types():
-            topics[topic] = {
-                "type": kinds[0] if len(kinds) == 1 else None,
-                "publishers": names(self.node.get_publishers_info_by_topic(topic)),
-                "subscribers": names(self.node.get_subscriptions_info_by_topic(topic)),
-            }
-        self._writer.put({"ev": "answer", "id": head["id"], "topics": topics})
+        """Answer with all topics and services, and their nodes."""
+        found = {"topics": topics_of(self.node), "services": services_of(self.node)}
+        self._writer.put(dict(found, ev="answer", id=head["id"]))
 
     def do_advertise(self, head: Any, body: Any) -> None:
         """Become a publisher of a topic."""
