@@ -19,12 +19,16 @@ from pytpc.cli.options import MARKS, recording_of
 from pytpc.present.as_json import mark_json
 from pytpc.recording.marking_session import MarkChange
 from pytpc.recording.marks import (
+    LONGEST_NOTE,
     MARK_TYPES,
+    MOST_PLACES,
     Mark,
     MarkType,
+    is_place,
     joined,
     marks_text,
     short_note,
+    with_where,
 )
 from pytpc.recording.marks_file import END_PATIENCE_S, MarksFile
 from pytpc.recording.marks_home import marks_home
@@ -37,6 +41,7 @@ class _MarksArguments:
     add: tuple[float, str] | None
     note: str
     observer: str
+    where: tuple[str, ...]
     remove: int | None
     as_csv: bool
     marks_files: tuple[Path, ...]
@@ -53,6 +58,12 @@ class _MarksArguments:
 )
 @click.option("--note", default="", metavar="TEXT", help="Note of the added mark.")
 @click.option("--observer", default="", metavar="NAME", help="Observer of the added mark.")
+@click.option(
+    "--where",
+    multiple=True,
+    metavar="NAME",
+    help="Topic, service, action, node or frame of the added mark; may be repeated.",
+)
 @click.option(
     "--remove",
     type=click.IntRange(min=1),
@@ -73,12 +84,13 @@ def marks_command(given: _MarksArguments) -> None:
     recording, add, remove = given.recording, given.add, given.remove
     if add is not None and remove is not None:
         raise click.UsageError("give --add or --remove, not both")
-    if add is None and (given.note or given.observer):
-        raise click.UsageError("--note and --observer need --add")
+    if add is None and (given.note or given.observer or given.where):
+        raise click.UsageError("--note, --observer and --where need --add")
+    note = _note_with(given.where, given.note)
     found = recording_of(recording, given.marks_files)
     marks = found.marks
     if add is not None:
-        mark = _mark_to_add(found, *add, given.observer, given.note)
+        mark = _mark_to_add(found, *add, given.observer, note)
         _change(MarksFile(marks_home(recording)), MarkChange(None, mark))
         marks = joined([*marks, mark])
         if not is_converted(recording):
@@ -99,6 +111,26 @@ def marks_command(given: _MarksArguments) -> None:
         console().print(_marks_table(found, marks), highlight=False)
     else:
         click.echo("no marks")
+
+
+def _note_with(where: Sequence[str], note: str) -> str:
+    """The note of a mark that is added, with the places that are given and its own.
+
+    Raises:
+        BadParameter: one is no ROS name, or they are too many.
+    """
+    names = [name.removeprefix("@") for name in where]
+    for name in names:
+        if not is_place(name):
+            raise click.BadParameter(f"{name!r} is not a ROS name", param_hint="--where")
+    every = dict.fromkeys([*names, *Mark(0, None, "", note).where])
+    noted = with_where(note, every) if names else note
+    if names and len(Mark(0, None, "", noted).where) < len(every):
+        raise click.BadParameter(
+            f"a note has at most {MOST_PLACES} places, and {LONGEST_NOTE} characters",
+            param_hint="--where",
+        )
+    return noted
 
 
 def _mark_to_add(found: Recording, at_s: float, kind: str, observer: str, note: str) -> Mark:
@@ -153,7 +185,8 @@ def _marks_table(found: Recording, marks: Sequence[Mark]) -> Table:
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
     for heading in ("#", "Seconds"):
         table.add_column(heading, justify="right")
-    for heading in ("Type", "Observer", "Note"):
+    has_places = any(mark.where for mark in marks)
+    for heading in ("Type", "Observer", *(["Where"] if has_places else []), "Note"):
         table.add_column(heading, overflow="fold")
     for number, mark in enumerate(marks, start=1):
         seconds = (mark.time_ns - found.start_ns) / 1e9
@@ -162,7 +195,8 @@ def _marks_table(found: Recording, marks: Sequence[Mark]) -> Table:
             f"{seconds:.1f}",
             mark.type or "none",
             Text(plain(mark.observer)),
-            Text(plain(short_note(mark.note))),
+            *([Text(", ".join(mark.where))] if has_places else []),
+            Text(plain(short_note(mark.remark))),
         )
     return table
 

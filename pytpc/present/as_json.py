@@ -231,6 +231,7 @@ def mark_json(mark: Mark, start_ns: int) -> Json:
         "type": mark.type,
         "observer": mark.observer,
         "note": mark.note,
+        "where": list(mark.where),
     }
 
 

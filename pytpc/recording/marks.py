@@ -33,11 +33,18 @@ _TOPICS: dict[str, MarkType | None] = {
 }
 LONGEST_NOTE = 500
 """Characters that can be typed, and that are shown."""
+MOST_PLACES = 8
+"""So many places of one mark are read."""
 _MOST_KEPT = 10_000
 _HEADER = ["time_ns", "type", "observer", "note"]
 # A spreadsheet may have changed the commas; the reader of marks then says what is wrong.
 _BEGIN = re.compile(rb'(?:\xef\xbb\xbf)?"?time_ns"?\s*[,;\t]\s*"?type')
 _SNIFFED = 256
+_PART = "[A-Za-z0-9_]+"
+_NAME = rf"(?:(?:~/?|/){_PART}|[A-Za-z_][A-Za-z0-9_]*)(?:/{_PART})*"
+_LONGEST_PLACE = 255
+# A whole word, of which the name is the first group.
+_PLACE = re.compile(rf"(?<!\S)@(?!\S{{{_LONGEST_PLACE + 1}}})({_NAME})[,.;:)]*(?!\S)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +54,9 @@ class Mark:
     ``time_ns`` is the marked time, ``type`` is None where the observer only says "wrong", and
     ``observer`` is the namespace of the topic (``marks0``), empty where there is none. ``note`` is
     what the observer wrote about it.
+
+    A word of the note that is an ``@`` and a ROS name says where the robot went wrong: it names a
+    topic, a service, an action, a node or a frame of tf.
     """
 
     time_ns: int
@@ -57,6 +67,56 @@ class Mark:
     def order(self) -> tuple[int, str, str]:
         """Sorting marks by this is deterministic."""
         return (self.time_ns, self.observer, self.type or "")
+
+    @property
+    def where(self) -> tuple[str, ...]:
+        """The places that the note names, each once, in their order; at most ``MOST_PLACES``.
+
+        >>> Mark(1, "I", "", "@/cmd_vel @~state, not ana@lab, and again @/cmd_vel").where
+        ('/cmd_vel', '~state')
+        """
+        names = dict.fromkeys(found[1] for found in _PLACE.finditer(self.note))
+        return tuple(names)[:MOST_PLACES]
+
+    @property
+    def remark(self) -> str:
+        """The note without the places at its beginning.
+
+        >>> Mark(1, "I", "", "@/cmd_vel @/odom too fast near @/map").remark
+        'too fast near @/map'
+        """
+        text = self.note.strip()
+        while found := _PLACE.match(text):
+            text = text[found.end() :].lstrip()
+        return text
+
+
+def is_place(name: str) -> bool:
+    """Whether it is a ROS name, which a note can have as a place.
+
+    >>> is_place("/cmd_vel"), is_place("base_link"), is_place("~state"), is_place("too fast")
+    (True, True, True, False)
+    """
+    return len(name) <= _LONGEST_PLACE and re.fullmatch(_NAME, name) is not None
+
+
+def with_where(note: str, where: Iterable[str]) -> str:
+    """The note with these places before its text, and no others; at most ``LONGEST_NOTE`` long.
+
+    Places that it began with are gone. One within the text stays there as a mere name.
+
+    >>> with_where("@/odom too fast near @/map.", ["/cmd_vel", "~state"])
+    '@/cmd_vel @~state too fast near /map.'
+    >>> with_where("@/odom too fast", [])
+    'too fast'
+    """
+    before = ""
+    for name in tuple(dict.fromkeys(where))[:MOST_PLACES]:
+        if len(before) + len(name) + 1 <= LONGEST_NOTE:
+            before += f"@{name} "
+    room = LONGEST_NOTE - len(before)
+    text = short_note(Mark(0, None, "", note).remark, room) if room > len("...") else ""
+    return (before + _PLACE.sub(lambda found: found[0][1:], text)).rstrip()
 
 
 def topic_of_marks(topic: str) -> tuple[MarkType | None, str] | None:
@@ -81,13 +141,20 @@ def topic_of_observer(observer: str, last: str) -> str:
 
 
 def joined(marks: Iterable[Mark]) -> tuple[Mark, ...]:
-    """``marks`` sorted, each once; of two that differ in their notes alone, the one with a note."""
+    """``marks`` sorted, each once.
+
+    Of two that differ in their notes alone, it is the one that says where, or else has a note.
+    """
     found: dict[tuple[int, str, str], Mark] = {}
     for mark in marks:
         before = found.get(mark.order())
-        if before is None or mark.note > before.note:
+        if before is None or _says(mark) > _says(before):
             found[mark.order()] = mark
     return tuple(sorted(found.values(), key=Mark.order))
+
+
+def _says(mark: Mark) -> tuple[bool, str]:
+    return (bool(mark.where), mark.note)
 
 
 def marks_between(marks: Iterable[Mark], start_ns: int, end_ns: int) -> list[Mark]:

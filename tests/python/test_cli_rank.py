@@ -433,6 +433,7 @@ def test_marks_are_listed(files):
         ["2", "19.0", "II"],
     ]
     first = {"time_ns": ns(16), "seconds": 15.0, "type": "I", "observer": "", "note": ""}
+    first["where"] = []
     assert json.loads(run("marks", bag, "--json").stdout)[0] == first
     assert run("marks", bag, "--csv").stdout == (
         f"time_ns,type,observer,note\n{ns(16)},I,,\n{ns(20)},II,,\n"
@@ -471,12 +472,36 @@ def test_what_cannot_be_added_or_removed(files):
         (["--add", "nan", "I"], "outside of the mission"),
         (["--add", "1", "III"], "'III' is not one of"),
         (["--add", "1", "I", "--remove", "1"], "give --add or --remove"),
-        (["--note", "x"], "--note and --observer need --add"),
+        (["--note", "x"], "--note, --observer and --where need --add"),
+        (["--add", "1", "I", "--where", "/a b"], "'/a b' is not a ROS name"),
+        (["--add", "1", "I", *(f"--where=/t{n}" for n in range(9))], "at most 8 places"),
     ):
         result = run("marks", bag, *arguments)
         assert (result.exit_code, result.stdout) == (2, "")
         assert said in result.stderr
     assert not bag.with_name("m.bag.marks.csv").exists()
+
+
+def test_places_are_added_with_a_mark_and_listed(quiet):
+    places = ["--where", "/cmd_vel", "--where", "~state"]
+    run("marks", quiet, "--add", "5", "II", "--note", "no picture", *places)
+    run("marks", quiet, "--add", "2.5", "none")
+    assert [row.split() for row in run("marks", quiet).stdout.splitlines()] == [
+        ["#", "Seconds", "Type", "Observer", "Where", "Note"],
+        ["1", "2.5", "none"],
+        ["2", "5.0", "II", "/cmd_vel,", "~state", "no", "picture"],
+    ]
+    said = json.loads(run("marks", quiet, "--json").stdout)
+    assert [(mark["note"], mark["where"]) for mark in said] == [
+        ("", []),
+        ("@/cmd_vel @~state no picture", ["/cmd_vel", "~state"]),
+    ]
+
+
+def test_a_note_keeps_its_own_places_with_those_that_are_added(quiet):
+    run("marks", quiet, "--add", "5", "II", "--note", "@/odom drifts", "--where", "@/cmd_vel")
+    (mark,) = read_marks(quiet.with_name("quiet.bag.marks.csv"))
+    assert mark.note == "@/cmd_vel @/odom drifts"
 
 
 def test_marks_that_cannot_be_written(quiet, monkeypatch):

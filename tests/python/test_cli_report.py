@@ -56,7 +56,8 @@ def text_of(page):
 def mark(seconds, kind):
     """A mark as all commands print it; the recording begins at 1 s."""
     time_ns = round((seconds + 1) * 1e9)
-    return {"time_ns": time_ns, "seconds": seconds, "type": kind, "observer": "", "note": ""}
+    said = {"observer": "", "note": "", "where": []}
+    return {"time_ns": time_ns, "seconds": seconds, "type": kind, **said}
 
 
 def test_a_page_is_written_of_a_folder(files, tmp_path):

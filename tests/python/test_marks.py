@@ -12,6 +12,7 @@ from mission_samples import BagFile, line, ns
 from pytpc.base.errors import InputError
 from pytpc.ingest.reading import read
 from pytpc.recording.marks import (
+    LONGEST_NOTE,
     MARK_TYPES,
     Mark,
     MarkMessages,
@@ -23,6 +24,7 @@ from pytpc.recording.marks import (
     read_marks,
     topic_for,
     topic_of_marks,
+    with_where,
     write_marks,
 )
 from pytpc.recording.mission import load_recording, save_recording
@@ -88,6 +90,63 @@ def test_what_was_recorded_twice_is_taken_back_once():
 def test_marks_of_several_sources_are_each_once():
     marks = [Mark(2, "I"), Mark(1, None, "ana"), Mark(2, "I", "", "late"), Mark(2, "I")]
     assert joined(marks) == (Mark(1, None, "ana"), Mark(2, "I", "", "late"))
+
+
+def where(note: str) -> tuple[str, ...]:
+    return Mark(1, "I", "", note).where
+
+
+@pytest.mark.parametrize(
+    ("note", "places"),
+    [
+        ("@/cmd_vel too fast", ("/cmd_vel",)),
+        ("at @move_base, then @~state; (@/a) @/b.) @/c:", ("move_base", "~state", "/b", "/c")),
+        ("@/a @/b @/a", ("/a", "/b")),
+        # An address, what begins with no name, and what is no name to its end.
+        ("ana@lab.org @ @2 @/a-b @/a//b @/a/ @@/a @/ä", ()),
+        ("@/" + "a" * 255, ()),
+        (" ".join(f"@/t{number}" for number in range(20)), tuple(f"/t{n}" for n in range(8))),
+    ],
+)
+def test_the_places_of_a_note(note: str, places: tuple[str, ...]):
+    assert where(note) == places
+
+
+def test_new_places_replace_those_before_the_text():
+    assert with_where("@/a @/b: it turned", ["/c", "/c", "~d"]) == "@/c @~d it turned"
+    assert with_where("", ["/c"]) == "@/c"
+    assert with_where("@/a", []) == ""
+
+
+def test_a_place_within_the_text_stays_as_a_name():
+    assert with_where("it left @/map, twice", ["/c"]) == "@/c it left /map, twice"
+
+
+# "@/c " takes 4 of 500 characters, so of 600 there are 493 and the dots.
+def test_a_long_text_loses_its_end_and_not_its_place():
+    assert with_where("x" * 600, ["/c"]) == "@/c " + "x" * 493 + "..."
+    # Two names of 248 characters fill 500 with a sign and a space each; nothing else has room.
+    names = ["/" + letter * 247 for letter in "abc"]
+    assert with_where("text", names) == f"@{names[0]} @{names[1]}"
+
+
+NAMES = st.from_regex(r"\A(/[a-z]\w{0,300}|~[a-z]|[a-z]\w?)\Z")
+
+
+@given(st.text(st.sampled_from("@/a~ .-\n")) | st.text(), st.lists(NAMES, max_size=3))
+def test_a_note_with_places_has_these(note: str, names: list[str]):
+    names = [name for name in names if len(name) < 100 and name.isascii()]
+    made = with_where(note, names)
+    assert where(made) == tuple(dict.fromkeys(names))
+    assert len(made) <= LONGEST_NOTE
+    assert with_where(made, names) == made
+
+
+# The bag has the note of before, and the file beside it that with the place.
+def test_of_two_notes_the_one_that_says_where_is_kept():
+    said, placed = Mark(1, "I", "", "too fast"), Mark(1, "I", "", "@/cmd_vel too fast")
+    assert said.note > placed.note
+    assert joined([said, placed]) == joined([placed, said]) == (placed,)
 
 
 def test_types_of_messages():
