@@ -42,7 +42,7 @@ def surest(treatment, seed, confidence, *, kind="type1", labels="confused", **ch
 
 
 CLEAN = [
-    *(surest("clean", 1, 0.6, kind="clean", labels=labels) for labels in ("typed", "untyped")),
+    *(surest("clean", 1, 0.85, kind="clean", labels=labels) for labels in ("typed", "untyped")),
     surest("clean", 1, 0.1, kind="clean"),
     surest("clean", 2, 0.1, kind="clean"),
     surest("clean", 3, None, kind="clean", marks=0),
@@ -146,7 +146,7 @@ def test_confidence(study_text, made_study):
     clean = {half: row_of(study_text, heading, "clean", "tpc", half, "typed") for half in HALVES}
     assert clean == {"tuning": ["1", "1", "0", "0"], "held-back": ["1", "0", "0", "0"]}
     assert row_of(study_text, "Clean missions and faults", "alpha", "fault_wires")[-2:] == [
-        "0.55",
+        "0.85",
         "yes",
     ]
 

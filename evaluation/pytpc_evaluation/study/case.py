@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
 from pytpc.recording.parameter_change import Change
 from pytpc.static.static_info import StaticInfo
@@ -20,12 +21,21 @@ class Case:
 
     ``recording`` has the marks, with types or without. ``reference`` is a good run, None where
     there is none. ``changes`` are in the order in which they were made, empty where unknown.
+    ``good`` are good runs with other settings. ``placed`` are the marks with what the observers say
+    of where it was wrong.
     """
 
     recording: Recording
     static_info: StaticInfo
     reference: Recording | None = None
     changes: tuple[Change, ...] = ()
+    good: tuple[Recording, ...] = ()
+    placed: tuple[Mark, ...] = ()
+
+    @property
+    def with_places(self) -> Recording:
+        """The mission with marks that say where."""
+        return replace(self.recording, marks=self.placed)
 
     @property
     def references(self) -> tuple[Recording, ...]:

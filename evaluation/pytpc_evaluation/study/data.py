@@ -5,23 +5,34 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from hashlib import sha256
 from pathlib import Path
 from typing import Any, Literal, get_args
 
 import pyarrow as pa
 
+from pytpc.api.wired_robot import with_wiring
 from pytpc.base.checked_json import parse_json
 from pytpc.base.columns import read_table
 from pytpc.base.errors import InputError, TpcError
-from pytpc.recording.marks import MARK_TYPES, Mark, MarkType
+from pytpc.diagnosis.thinned import thinned
+from pytpc.recording.marks import MARK_TYPES, Mark, MarkType, with_where
 from pytpc.recording.mission import Recording, load_recording
 from pytpc.recording.parameter_change import Change
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.changes import read_changes
 from pytpc_evaluation.study.case import Case
 from pytpc_evaluation.study.changes import CHANGES_FILE
-from pytpc_evaluation.study.dataset import DONE_FILE, MARKED_FILE, STUDY_FILE
+from pytpc_evaluation.study.dataset import (
+    CAUSES_FILE,
+    DONE_FILE,
+    MARKED_FILE,
+    STUDY_FILE,
+    Cause,
+    load_causes,
+)
 from pytpc_evaluation.study.plan import Half
+from pytpc_evaluation.study.where import place_of
 from pytpc_evaluation.treatment import TREATMENT_FILE
 
 Labels = Literal["typed", "untyped", "confused"]
@@ -40,10 +51,11 @@ class UserMark:
     right: MarkType
     said: MarkType
 
-    def mark(self, labels: Labels) -> Mark:
-        """The mark as a method gets it."""
+    def mark(self, labels: Labels, where: str = "") -> Mark:
+        """The mark as a method gets it; ``where`` is what the observer says of the place."""
         types: dict[Labels, MarkType | None] = {"typed": self.right, "confused": self.said}
-        return Mark(self.time_ns, types.get(labels), self.observer)
+        note = with_where("", [where] if where else [])
+        return Mark(self.time_ns, types.get(labels), self.observer, note)
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +63,8 @@ class Mission:
     """A mission of the study.
 
     ``type`` is that of the treatment; ``parameter`` and ``node`` are what it changed, None where
-    nothing was; ``round`` is when the treatment was made.
+    nothing was; ``round`` is when the treatment was made. ``good`` are good runs with other
+    settings, as they are learned; ``causes`` is what was seen to be wrong.
     """
 
     system: str
@@ -67,12 +80,28 @@ class Mission:
     reference: Recording | None
     changes: tuple[Change, ...]
     round: int = 1
+    good: tuple[Recording, ...] = ()
+    causes: tuple[Cause, ...] = ()
 
     def case(self, labels: Labels, who: str = ALL) -> Case:
         """What a method gets to see, with the marks of all users or of one."""
-        marks = (m.mark(labels) for m in self.marks if who in {ALL, m.observer})
-        recording = replace(self.recording, marks=tuple(sorted(marks, key=Mark.order)))
-        return Case(recording, self.static_info, self.reference, self.changes)
+        own = [m for m in self.marks if who in {ALL, m.observer}]
+        plain = sorted((m.mark(labels) for m in own), key=Mark.order)
+        placed = sorted((m.mark(labels, self._where(m)) for m in own), key=Mark.order)
+        return Case(
+            replace(self.recording, marks=tuple(plain)),
+            self.static_info,
+            self.reference,
+            self.changes,
+            self.good,
+            tuple(placed),
+        )
+
+    def _where(self, mark: UserMark) -> str:
+        """What the observer of a mark says of the place; nothing of a false alarm."""
+        if not 0 <= mark.cause < len(self.causes):
+            return ""
+        return place_of(self.system, self.causes[mark.cause].reason)
 
 
 def missions(
@@ -115,12 +144,14 @@ def load_mission(out: Path, path: Path, half: Half) -> Mission:
         seed=seed_of(path),
         parameter=treatment["parameter"],
         node=treatment["node"],
-        recording=load_recording(path),
+        recording=with_wiring(load_recording(path), path),
         static_info=_static(out / "systems" / system / "static.json"),
         marks=user_marks(path / MARKED_FILE),
         reference=_reference(out / "reference" / system),
         changes=_changes(path / CHANGES_FILE),
         round=treatment.get("round", 1),
+        good=_drawn(f"{system}/{path.parent.name}/{path.name}", _good(out / "good" / system)),
+        causes=_causes(path / CAUSES_FILE),
     )
 
 
@@ -185,6 +216,11 @@ def _changes(path: Path) -> tuple[Change, ...]:
     return read_changes(path) if path.is_file() else ()
 
 
+def _causes(path: Path) -> tuple[Cause, ...]:
+    """What was seen to be wrong; nothing where only marks are known."""
+    return tuple(load_causes(path)) if path.is_file() else ()
+
+
 @cache
 def _static(path: Path) -> StaticInfo:
     return StaticInfo.load(path)
@@ -193,6 +229,19 @@ def _static(path: Path) -> StaticInfo:
 @cache
 def _reference(path: Path) -> Recording | None:
     return load_recording(path) if path.is_dir() else None
+
+
+@cache
+def _good(path: Path) -> tuple[Recording, ...]:
+    """The good runs of a robot, as they are learned."""
+    found = sorted(one for one in path.glob("seed-*") if (one / DONE_FILE).is_file())
+    return tuple(thinned(load_recording(one)) for one in found)
+
+
+def _drawn(mission: str, runs: Sequence[Recording]) -> tuple[Recording, ...]:
+    """The runs in an order that is drawn for each mission: a method takes the first ones."""
+    drawn = [sha256(f"{mission}/{number}".encode()).hexdigest() for number in range(len(runs))]
+    return tuple(run for _, run in sorted(zip(drawn, runs, strict=True), key=lambda one: one[0]))
 
 
 def seed_of(path: Path) -> int:

@@ -15,15 +15,16 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import bdtri
 
+from pytpc.diagnosis.results.suspects import SURE
+
 DRAWS = 2000
 BINS = 5
 """Of confidence, for its calibration."""
 SPARSE = 5
 """A bin with verdicts about fewer treatments says little."""
 SEED = 8
-CONFIDENT = 0.5
-"""From here on a method accuses: it takes its first suspect to be likelier than all else together,
-"none of them" included."""
+CONFIDENT = SURE
+"""From here on a method accuses."""
 _TAIL = 0.025
 """What an interval of 95 % leaves out at each end."""
 

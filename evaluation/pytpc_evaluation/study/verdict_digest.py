@@ -17,10 +17,11 @@ from pathlib import Path
 import pytpc
 import pytpc_evaluation
 from pytpc.base.errors import InputError
+from pytpc.recording.graph_file import GRAPH_FILE
 from pytpc.recording.mission import EVENTS_FILE, MARKS_FILE, SUMMARIES_FILE
 from pytpc_evaluation.study.case import Method
 from pytpc_evaluation.study.changes import CHANGES_FILE
-from pytpc_evaluation.study.dataset import MARKED_FILE
+from pytpc_evaluation.study.dataset import CAUSES_FILE, MARKED_FILE
 from pytpc_evaluation.treatment import TREATMENT_FILE
 
 _PACKAGES = {package.__name__: Path(package.__path__[0]) for package in (pytpc, pytpc_evaluation)}
@@ -40,9 +41,10 @@ def mission_digest(out: Path, mission: Path, half: str) -> str:
         InputError: a file cannot be read.
     """
     system = mission.parent.parent.name
-    own = (*_RECORDING, MARKED_FILE, CHANGES_FILE, TREATMENT_FILE)
+    own = (*_RECORDING, MARKED_FILE, CHANGES_FILE, TREATMENT_FILE, CAUSES_FILE, GRAPH_FILE)
     files = [mission / name for name in own]
-    files += [out / "reference" / system / name for name in _RECORDING]
+    good = [out / "reference" / system, *sorted((out / "good" / system).glob("seed-*"))]
+    files += [folder / name for folder in good for name in _RECORDING]
     files.append(out / "systems" / system / "static.json")
     return digest_of([half, *map(contents, files)])
 

@@ -15,6 +15,7 @@ from pytpc.diagnosis.ranking.mark_ranking import outside
 from pytpc.diagnosis.ranking.other_nodes import OtherNodes
 from pytpc.diagnosis.ranking.other_values import diagnose_beside
 from pytpc.diagnosis.ranking.posterior import Decisive, Posterior
+from pytpc.diagnosis.ranking.reach import place_notes
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.ranking.summarised import with_summarised
 from pytpc.diagnosis.results.suspects import Accused, Blame, Evaluation
@@ -46,7 +47,7 @@ def blame(recording: Recording, static_info: StaticInfo, question: Question = PL
     log = LoggedEvaluations(recording.events.with_keys(tpcs.keys), recording.summaries)
     events = with_summarised(recording).with_keys(tpcs.keys)
     beyond = [outside(mark, log, question.window_s) for mark in recording.marks]
-    notes = _notes(recording, beyond)
+    notes = (*_notes(recording, beyond), *place_notes(recording, static_info))
     if not recording.marks or all(beyond) or not len(events):
         return Blame((), 1.0, len(tpcs.names), recording.marks, notes)
     found = diagnose_beside(

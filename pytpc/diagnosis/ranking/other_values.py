@@ -23,6 +23,7 @@ from pytpc.diagnosis.ranking.known_good import (
     of_references,
 )
 from pytpc.diagnosis.ranking.posterior import Posterior, diagnose_log, softmax
+from pytpc.diagnosis.ranking.reach import reach_prior
 from pytpc.diagnosis.ranking.replayed_outcomes import replayed
 from pytpc.diagnosis.ranking.summarised import with_summarised
 from pytpc.diagnosis.results.differences import RunDifferences
@@ -94,10 +95,10 @@ def diagnose_beside(
     changes: Sequence[Change] = (),
     differences: RunDifferences | None = None,
 ) -> Posterior:
-    """Judge all parameters by all marks, and by what the other values would have changed.
+    """Judge all parameters by all marks, by what other values would have changed, and by where.
 
     Args:
-        recording: the mission with its marks, of any types or none.
+        recording: the mission with its marks, of any types or none, and its graph.
         static_info: what the analysis found.
         references: good runs, the last one last; their thresholds count.
         changes: what was changed since the robot worked, newest last; empty if not known. Their
@@ -107,6 +108,31 @@ def diagnose_beside(
             one of a reference counts.
         differences: what differs from the references, for ``nobody``.
     """
+    found = _by_values(recording, static_info, references, changes, nobody(differences))
+    prior = reach_prior(recording, static_info, Tpcs.of(static_info))
+    return found if not prior.any() else _with_prior(found, prior)
+
+
+def _with_prior(found: Posterior, prior: Floats) -> Posterior:
+    """The diagnosis with more log odds for each parameter, float64[p]."""
+    weights = found.posterior * np.exp(prior)
+    total = float(weights.sum()) + found.none
+    return replace(
+        found,
+        scores=found.scores + prior,
+        posterior=weights / total,
+        none=found.none / total,
+    )
+
+
+def _by_values(
+    recording: Recording,
+    static_info: StaticInfo,
+    references: Sequence[Recording],
+    changes: Sequence[Change],
+    none_score: float,
+) -> Posterior:
+    """The diagnosis without the graph."""
     tpcs = Tpcs.of(static_info)
     here = with_summarised(recording)
     default = of_defaults(static_info, tpcs, here)
@@ -123,12 +149,12 @@ def diagnose_beside(
         if not default.others:
             return diagnose_log(recording, static_info)
         prior = np.where(np.isnan(default.prior), _unknown(default.prior), default.prior)
-        return diagnose_replayed(recording, static_info, prior, default.others, nobody(differences))
+        return diagnose_replayed(recording, static_info, prior, default.others, none_score)
     prior = np.fmin.reduce([one.prior for one in found])
     prior[np.isnan(prior)] = UNCHANGED / 2
     prior += np.nan_to_num(default.prior)
     others = {key: value for one in found for key, value in one.others.items()}
-    return diagnose_replayed(recording, static_info, prior, others, nobody(differences))
+    return diagnose_replayed(recording, static_info, prior, others, none_score)
 
 
 def _unknown(prior: Floats) -> float:

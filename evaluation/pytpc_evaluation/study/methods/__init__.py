@@ -6,7 +6,14 @@ from collections.abc import Mapping
 
 from pytpc_evaluation.study.case import Method
 from pytpc_evaluation.study.methods.importance import importance
-from pytpc_evaluation.study.methods.ours import tpc, tpc_changes, tpc_reference
+from pytpc_evaluation.study.methods.ours import (
+    GoodRuns,
+    tpc,
+    tpc_changes,
+    tpc_log,
+    tpc_reference,
+    tpc_where,
+)
 from pytpc_evaluation.study.methods.plain import (
     by_chance,
     differs_at_random,
@@ -25,7 +32,13 @@ METHODS: Mapping[str, Method] = {
     "turned-decisions": turned_decisions,
     "differs-at-random": differs_at_random,
     "random": by_chance,
+    "tpc-log": tpc_log,
     "tpc": tpc,
+    "tpc+where": tpc_where,
+    "tpc+1-run": GoodRuns(1),
+    "tpc+2-runs": GoodRuns(2),
+    "tpc+4-runs": GoodRuns(4),
+    "tpc+2-runs+where": GoodRuns(2, where=True),
     "tpc+reference": tpc_reference,
     "tpc+changes": tpc_changes,
 }

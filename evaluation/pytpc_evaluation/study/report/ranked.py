@@ -23,7 +23,8 @@ BASELINE = "thesis"
 CHANCE = "random"
 CHANCE_OF_DIFFERENT = "differs-at-random"
 TURNED = "turned-decisions"
-METHODS = (OURS, BESIDE_CLEAN, "tpc+changes", BASELINE, "thesis-doubt", "importance",
+METHODS = (OURS, "tpc-log", "tpc+where", "tpc+1-run", "tpc+2-runs", "tpc+4-runs",
+           "tpc+2-runs+where", BESIDE_CLEAN, "tpc+changes", BASELINE, "thesis-doubt", "importance",
            TURNED, "largest-change", "recent-change", CHANCE_OF_DIFFERENT,
            CHANCE)  # fmt: skip
 TARGETS: Mapping[str, float] = {"typed": 0.90, "untyped": 0.80, "confused": 0.80}

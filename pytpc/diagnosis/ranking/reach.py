@@ -1,0 +1,192 @@
+"""Whether the outcome of a comparison can get to where the robot was seen to go wrong.
+
+A mark may say where (`Mark.where`). Messages go from node to node, and whatever a node publishes
+may depend on any of its comparisons: the analysis names only the nearest exposing statement. So it
+is asked of nodes. Without such a mark, what counts is whether anybody hears the node at all.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from pytpc.base.closest import did_you_mean
+from pytpc.base.columns import Floats
+from pytpc.diagnosis.scores.score_tables import Tpcs
+from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
+from pytpc.static.static_info import StaticInfo
+from pytpc.static.wiring import Wiring, is_tool
+
+UNREACHED = -6.0
+"""The log odds of a parameter whose nodes cannot reach what a mark names."""
+
+ELSEWHERE = -2.5
+"""The same of one whose nodes are not those that the marks name: people may be wrong about it."""
+
+UNHEARD = -4.0
+"""The same of one whose nodes nobody hears, if no mark says where. A driver acts by its hardware,
+which no graph has, so it is not impossible."""
+
+_ACTION = ("goal", "cancel", "feedback", "result", "status")
+_OF_ROS = frozenset({"/rosout", "/rosout_agg", "/clock", "/parameter_events", "/diagnostics"})
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """What a person meant by a place: topics and services, and the nodes that act by them.
+
+    Without topics it is all that the nodes do.
+    """
+
+    topics: frozenset[str]
+    nodes: frozenset[str]
+
+
+@dataclass(frozen=True)
+class Reach:
+    """The way of messages through a recorded graph.
+
+    ``calls`` are pairs of a node and a service that its code names, by full names: who calls a
+    service is in no graph.
+    """
+
+    wiring: Wiring
+    calls: frozenset[tuple[str, str]]
+
+    @classmethod
+    def of(cls, static_info: StaticInfo, wiring: Wiring | None) -> Reach | None:
+        """The graph of a mission; None if it was not recorded."""
+        if wiring is None or not wiring.topics:
+            return None
+        calls = set()
+        for unit in static_info.units:
+            ran = {node for one in unit.comparisons for node in wiring.nodes_of(unit, one)}
+            names = {one.topic for one in unit.comparisons} | {one.topic for one in unit.exposing}
+            calls |= {(node.name, node.topic(name)) for node in ran for name in names if name}
+        known = (one for one in calls if one[0] in wiring.connected and one[1].startswith("/"))
+        return cls(wiring, frozenset(one for one in known if one[1] not in wiring.topics))
+
+    @cached_property
+    def senders(self) -> Mapping[str, frozenset[str]]:
+        """The nodes that publish each topic, or call each service."""
+        found = defaultdict[str, set[str]](set)
+        for name, topic in self.wiring.topics.items():
+            found[name] |= topic.publishers
+        for node, name in self.calls:
+            found[name].add(node)
+        return {name: frozenset(nodes) for name, nodes in found.items() if name not in _OF_ROS}
+
+    @cached_property
+    def hearers(self) -> Mapping[str, frozenset[str]]:
+        """The other nodes of the robot that hear each node."""
+        found = defaultdict[str, set[str]](set)
+        for name, nodes in self.senders.items():
+            topic = self.wiring.topics.get(name)
+            offered = self.wiring.services.get(name, frozenset())
+            others = offered if topic is None else topic.subscribers
+            for node in nodes:
+                found[node] |= {one for one in others if one != node and not is_tool(one)}
+        return {node: frozenset(others) for node, others in found.items()}
+
+    def is_heard(self, node: str) -> bool:
+        """Whether another node of the robot hears it, or may: who offers a service is not always
+        recorded. True for a node that is not in the graph."""
+        if node not in self.wiring.connected or self.hearers.get(node):
+            return True
+        return not {name for one, name in self.calls if one == node} <= self.wiring.services.keys()
+
+    def end(self, where: str) -> End | None:
+        """What a person means by a place; None if nothing in the graph is called so.
+
+        The last parts of a name are enough if only one thing has them.
+        """
+        topics = _named(where, self.senders) or self._action(where)
+        if topics:
+            return End(topics, frozenset[str]().union(*(self.senders[name] for name in topics)))
+        nodes = _named(where, {one for one in self.wiring.connected if not is_tool(one)})
+        return End(frozenset(), nodes) if nodes else None
+
+    def _action(self, where: str) -> frozenset[str]:
+        """The topics of an action."""
+        parts = [(name, *name.rpartition("/")[::2]) for name in self.senders]
+        actions = _named(where, {above for _, above, last in parts if last in _ACTION})
+        return frozenset(name for name, above, last in parts if above in actions)
+
+    def reaching(self, ends: Iterable[End]) -> frozenset[str]:
+        """The nodes whose messages can lead to one of these, themselves among them."""
+        found = {node for one in ends for node in one.nodes}
+        left = list(found)
+        while left:
+            node = left.pop()
+            new = [one for one, others in self.hearers.items() if node in others]
+            left += [one for one in new if one not in found]
+            found |= {*new}
+        return frozenset(found)
+
+
+def _named(said: str, names: Collection[str]) -> frozenset[str]:
+    """The name that a person means: in full, or by its last parts."""
+    full = f"/{said.strip('~/')}"
+    if full in names:
+        return frozenset({full})
+    ending = [name for name in names if name.endswith(full)]
+    return frozenset(ending if len(ending) == 1 else ())
+
+
+def reach_prior(recording: Recording, static_info: StaticInfo, tpcs: Tpcs) -> Floats:
+    """float64[p], the log odds of each parameter by what the marks say of where, and the graph.
+
+    0 for one that no node evaluated, and for all if no graph was recorded. A mark whose place the
+    graph does not have says nothing.
+    """
+    prior = np.zeros(len(tpcs.names))
+    reach = Reach.of(static_info, recording.wiring)
+    if reach is None:
+        return prior
+    ends = [one for one in map(reach.end, places(recording.marks)) if one is not None]
+    reaching = reach.reaching(ends)
+    # A topic says nothing of the node that is wrong: its cause may be far before it.
+    are_nodes = bool(ends) and not any(one.topics for one in ends)
+    named = frozenset[str]().union(*(one.nodes for one in ends)) if are_nodes else reaching
+    nodes_of = recording.nodes_of
+    for column, name in enumerate(tpcs.names):
+        ran = [node for key in tpcs.keys_of[name] for node in nodes_of.get(key, ())]
+        # A Python node that reports under its program's name has the process behind it.
+        nodes = {node.partition(" ")[0] for node in ran} & reach.wiring.connected
+        if not nodes:
+            continue
+        if ends:
+            prior[column] = (
+                UNREACHED if not nodes & reaching else 0.0 if nodes & named else ELSEWHERE
+            )
+        elif not any(map(reach.is_heard, nodes)):
+            prior[column] = UNHEARD
+    return prior
+
+
+def places(marks: Iterable[Mark]) -> list[str]:
+    """The places that marks name, each once."""
+    return list(dict.fromkeys(name for mark in marks for name in mark.where))
+
+
+def place_notes(recording: Recording, static_info: StaticInfo) -> tuple[str, ...]:
+    """A sentence for each place that the graph does not have, or for want of a graph."""
+    said: Sequence[str] = places(recording.marks)
+    if not said:
+        return ()
+    reach = Reach.of(static_info, recording.wiring)
+    if reach is None:
+        return ("marks say where it was wrong, but the graph was not recorded (graph.json)",)
+    names = sorted({*reach.senders, *reach.wiring.connected})
+    unknown = [name for name in said if reach.end(name) is None]
+    hints = [did_you_mean(f"/{name.strip('~/')}", names) for name in unknown]
+    return tuple(
+        f"a mark says @{name}, which is no topic, service, action or node of the recorded graph"
+        f"{hint}"
+        for name, hint in zip(unknown, hints, strict=True)
+    )
