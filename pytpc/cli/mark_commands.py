@@ -26,6 +26,7 @@ from pytpc.present.marking_terminal import (
     Showing,
     run_marking,
 )
+from pytpc.recording.graph_places import Place, recorded_places
 from pytpc.recording.marking_session import Session
 from pytpc.recording.marks_file import MarksFile
 from pytpc.recording.marks_home import MarksHome, marks_home
@@ -190,13 +191,20 @@ def _shortest(path: Path) -> Path:
 def recorded(recording: Recording, source: Path, begin_ns: int | None = None) -> RecordedMission:
     """The clock that goes through a recording, from its begin or from a later time.
 
+    Where its graph was recorded, too, the observer chooses from the places of that.
+
     Raises:
         InputError: it has no length.
     """
     if recording.end_ns <= recording.start_ns:
         raise InputError("the recording has no length, so no clock can run through it", source)
     start_ns = recording.start_ns if begin_ns is None else begin_ns
-    return RecordedMission(plain(source.name), start_ns, recording.end_ns)
+    places: tuple[Place, ...] = ()
+    try:
+        places = recorded_places(marks_home(source).file.parent)
+    except InputError as error:
+        warn(plain(str(error)))
+    return RecordedMission(plain(source.name), start_ns, recording.end_ns, places)
 
 
 def mark_in_terminal(

@@ -19,6 +19,8 @@ from rich.text import Text
 
 from pytpc.base.errors import RunError
 from pytpc.base.signals import signals_end
+from pytpc.base.wording import plain
+from pytpc.recording.graph_places import Place
 from pytpc.recording.marking_session import (
     PLAYER_HELP,
     MarkChange,
@@ -28,6 +30,8 @@ from pytpc.recording.marking_session import (
     clock_text,
     press,
     screen,
+    to_choose,
+    with_places,
 )
 from pytpc.recording.marks_file import END_PATIENCE_S, KEY_PATIENCE_S, MarksFile
 
@@ -78,9 +82,12 @@ class MarkedMission(Protocol):
 class RecordedMission:
     """A recording that a ``Player`` runs through."""
 
-    def __init__(self, title: str, start_ns: int, end_ns: int) -> None:
-        """The clock stands at ``start_ns``."""
+    def __init__(
+        self, title: str, start_ns: int, end_ns: int, places: tuple[Place, ...] = ()
+    ) -> None:
+        """The clock stands at ``start_ns``; ``places`` are those of the recorded graph."""
         self._title = title
+        self._places = places
         self._player = Player.of(start_ns, end_ns)
 
     def now_ns(self) -> int | None:
@@ -102,7 +109,10 @@ class RecordedMission:
         whole = clock_text(player.end_ns - player.start_ns)
         state = "going" if player.playing else "stopped"
         status = f"{at} of {whole}, {state}, speed {player.speed:g}"
-        return View(self._title, (status,), player.start_ns, self.now_ns(), PLAYER_HELP)
+        now_ns = self.now_ns()
+        return View(
+            self._title, (status,), player.start_ns, now_ns, PLAYER_HELP, places=self._places
+        )
 
     def send(self, change: MarkChange) -> str:
         """Nobody else needs to know."""
@@ -135,7 +145,7 @@ class Showing(NamedTuple):
     """How a session is shown, and what ends it besides the observer.
 
     ``paint`` makes the screen; ``full``: use the whole screen, and restore it afterwards.
-    ``is_over`` says whether the mission has ended, which ends the session, but not within a note;
+    ``is_over`` says whether the mission has ended, which ends the session, but not while typing;
     with it, signals are the caller's. ``must_end`` says whether to end at once, as after a signal.
     """
 
@@ -173,13 +183,15 @@ def run_marking(
         signals = signals_end() if how.is_over is None else nullcontext()
         with signals, _keys() as read, _shown(console, how.paint, full=how.full) as show:
             while not (session.ended or how.must_end()):
-                if how.is_over is not None and session.typing is None and how.is_over():
+                if how.is_over is not None and not session.is_typing and how.is_over():
                     break
-                show(session, mission.view())
+                view = mission.view()
+                session = with_places(session, view.places)
+                show(session, view)
                 for key in read():
-                    if session.typing is None and mission.press(key):
+                    if not session.is_typing and mission.press(key):
                         continue
-                    session, change = press(session, key, mission.now_ns())
+                    session, change = press(session, key, mission.now_ns(), view.places)
                     if change is not None:
                         file.take(change)
                         told = mission.send(change)
@@ -189,8 +201,8 @@ def run_marking(
                 mission.tick()
                 session = _saved(session, file)
     finally:
-        if session.typing is not None:
-            session, noted = press(session, "enter", None)
+        if session.is_typing:
+            session, noted = press(session, "closed", None)
             if noted is not None:
                 file.take(noted)
                 mission.send(noted)
@@ -226,7 +238,7 @@ def _keys() -> Iterator[Callable[[], list[str]]]:
                 time.sleep(_ESCAPE_S)
                 pressed = source.read_keys() if _is_ready(source) else source.flush_keys()
             found = [key for one in pressed for key in _named(one)]
-            return [*found, "enter", "end"] if source.closed else found
+            return [*found, "closed"] if source.closed else found
 
         yield read
     source.close()
@@ -265,11 +277,14 @@ def _shown(
     def tell(session: Session, view: View) -> None:
         nonlocal told
         said = session.said if session.typing is None else "note (Enter ends it):"
+        if session.naming is not None and not said:
+            said = "where (number, name or part; Enter ends it):"
         if told is None:
             lines = paint(session, view, _DUMB_WIDTH, _DUMB_HEIGHT, False)
             print("\n".join(line.plain for line in lines if line.plain), flush=True)
         elif said and told != (len(session.marks), said):
-            print(said, flush=True)
+            choices = to_choose(session, _DUMB_WIDTH, _DUMB_HEIGHT) if not session.said else []
+            print("\n".join([*choices, plain(said)]), flush=True)
         told = len(session.marks), said
 
     yield tell

@@ -15,7 +15,16 @@ from rich.text import Text
 
 from pytpc.base.wording import many, plain, show
 from pytpc.diagnosis.results.live import Kept, LiveRow, Look, TrendPart
-from pytpc.recording.marking_session import Session, View, clock_text, cut, folded
+from pytpc.recording.marking_session import (
+    OTHER_KEYS,
+    Session,
+    View,
+    asked,
+    clock_text,
+    cut,
+    folded,
+    to_choose,
+)
 from pytpc.recording.marks import Mark, MarkType, short_note
 
 Layout = tuple[MarkType | None, ...]
@@ -114,8 +123,10 @@ def watch_screen(session: Session, view: View, panel: Panel, width: int, height:
     head = [Text(cut(view.title, width), style="bold")]
     head += _plain([*view.status, panel.status.words()], width)
     foot = _plain([_keys(view)], width, "dim")
-    if session.typing is not None:
-        foot += _plain([f"note: {session.typing}_"], width, "bold")
+    if session.is_typing:
+        prompt = _plain(asked(session), width, "bold")
+        room = (height - len(head) - len(foot) - len(prompt)) // 2
+        foot += [*map(Text, to_choose(session, width, room)), *prompt]
     elif session.said:
         said = [session.said] if height >= _ROOMY else [cut(session.said, width)]
         foot += _plain(said, width, "bold")
@@ -265,8 +276,7 @@ def _named(mark: Mark) -> str:
 def _keys(view: View) -> str:
     """What the keys do, in a few words that do not wrap."""
     marks = [f"{key} {_SHORT[kind]}" for key, kind in zip("123", ("I", "II", None), strict=True)]
-    others = ("n note", "u undo", "q quit")
-    words = (*marks, *others, *WATCH_HELP, *view.help)
+    words = (*marks, *OTHER_KEYS, *WATCH_HELP, *view.help)
     return "  ".join(word.replace(" ", "\N{NO-BREAK SPACE}") for word in words)
 
 

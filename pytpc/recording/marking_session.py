@@ -14,7 +14,8 @@ from typing import NamedTuple
 from rich.cells import cell_len, set_cell_size
 
 from pytpc.base.wording import plain
-from pytpc.recording.marks import LONGEST_NOTE, Mark, MarkType
+from pytpc.recording.graph_places import Naming, Place
+from pytpc.recording.marks import LONGEST_NOTE, Mark, MarkType, with_where
 
 MEANINGS: dict[MarkType | None, str] = {
     "I": "it did something it should not have",
@@ -50,9 +51,9 @@ class MarkChange(NamedTuple):
 class Session:
     """One observer's marks, in the order in which they were made.
 
-    ``typing`` is the note that is being written, or None. ``said`` is a message for the observer,
-    or empty. ``used`` are all times that were marked: none is used again, even if its mark was
-    undone.
+    ``typing`` is the note that is being written, or None; ``naming`` the place at which the last
+    mark was wrong, while it is being chosen. ``said`` is a message for the observer, or empty.
+    ``used`` are all times that were marked: none is used again, even if its mark was undone.
     """
 
     observer: str
@@ -61,38 +62,69 @@ class Session:
     said: str = ""
     ended: bool = False
     used: frozenset[int] = frozenset()
+    naming: Naming | None = None
+
+    @property
+    def is_typing(self) -> bool:
+        """Whether keys are text."""
+        return self.typing is not None or self.naming is not None
 
 
-def press(session: Session, key: str, now_ns: int | None) -> tuple[Session, MarkChange | None]:
+def press(
+    session: Session, key: str, now_ns: int | None, places: tuple[Place, ...] = ()
+) -> tuple[Session, MarkChange | None]:
     """What a key does.
 
     Args:
         session: what was before.
         key: a character, or ``enter``, ``backspace``, ``escape``, ``left``, ``right``, ``up``,
-            ``down``, ``end`` (Ctrl-C, Ctrl-D).
+            ``down``, ``end`` (Ctrl-C, Ctrl-D), ``closed`` (the terminal is gone): a note is kept
+            as far as it was typed, and a place is not.
         now_ns: the time to mark; None where it is not known.
+        places: the places of the graph, from which the observer chooses.
 
     Returns:
         What is after, and what happened to the marks.
     """
-    if key == "end" or (key == "q" and session.typing is None):
-        return replace(session, typing=None, ended=True), None
+    if key in {"end", "closed"} or (key == "q" and not session.is_typing):
+        change = None
+        if key == "closed" and session.typing is not None:
+            session, change = _type(session, session.typing, "enter")
+        return replace(session, typing=None, naming=None, ended=True), change
     if session.typing is not None:
         return _type(session, session.typing, key)
+    if session.naming is not None:
+        return _name(session, session.naming, key)
     if key in _KEYS:
         return _mark(session, _KEYS[key], now_ns)
-    if key not in {"n", "u"}:
+    if key not in {"n", "u", "w"}:
         return session, None
-    return _look_back(session, key)
+    return _look_back(session, key, places)
 
 
-def _look_back(session: Session, key: str) -> tuple[Session, MarkChange | None]:
-    """Keys for the last mark: add a note to it, or undo it."""
+def with_places(session: Session, places: tuple[Place, ...]) -> Session:
+    """The session, in which the observer can choose from places that were not known before.
+
+    Those that were shown keep their numbers.
+    """
+    if session.naming is None or session.naming.places:
+        return session
+    return replace(session, naming=session.naming._replace(places=places))
+
+
+def _look_back(
+    session: Session, key: str, places: tuple[Place, ...]
+) -> tuple[Session, MarkChange | None]:
+    """Keys for the last mark: add a note or a place to it, or undo it."""
     if not session.marks:
         return replace(session, said="no mark yet"), None
     last = session.marks[-1]
     if key == "n":
-        return replace(session, typing=last.note, said=""), None
+        # What is typed next does not become part of a place.
+        text = f"{last.note} " if last.where and not last.remark else last.note
+        return replace(session, typing=text, said=""), None
+    if key == "w":
+        return replace(session, naming=Naming(places), said=""), None
     said = f"taken back: {_named(last)}"
     return replace(session, marks=session.marks[:-1], said=said), MarkChange(last, None)
 
@@ -115,10 +147,7 @@ def _mark(
 
 def _type(session: Session, text: str, key: str) -> tuple[Session, MarkChange | None]:
     if key == "enter":
-        last = session.marks[-1]
-        noted = replace(last, note=text.strip())
-        after = replace(session, marks=(*session.marks[:-1], noted), typing=None, said="noted")
-        return after, MarkChange(last, noted)
+        return _noted(replace(session, typing=None), text.strip(), "noted")
     if key == "escape":
         return replace(session, typing=None, said=""), None
     if key == "backspace":
@@ -126,6 +155,31 @@ def _type(session: Session, text: str, key: str) -> tuple[Session, MarkChange | 
     if len(key) == 1 and key.isprintable() and len(text) < LONGEST_NOTE:
         return replace(session, typing=text + key), None
     return session, None
+
+
+def _name(session: Session, naming: Naming, key: str) -> tuple[Session, MarkChange | None]:
+    """A key while a place is being chosen."""
+    if key == "escape":
+        return replace(session, naming=None, said=""), None
+    if key != "enter":
+        typed = naming.type(key)
+        return replace(session, naming=typed, said="" if typed != naming else session.said), None
+    try:
+        place = naming.chosen()
+    except ValueError as error:
+        return replace(session, said=str(error)), None
+    left = replace(session, naming=None, said="")
+    if not place:
+        return left, None
+    note = with_where(session.marks[-1].note, [place])
+    return _noted(left, note, f"wrong at {place}")
+
+
+def _noted(session: Session, note: str, said: str) -> tuple[Session, MarkChange]:
+    last = session.marks[-1]
+    noted = replace(last, note=note)
+    after = replace(session, marks=(*session.marks[:-1], noted), said=said)
+    return after, MarkChange(last, noted)
 
 
 def _named(mark: Mark) -> str:
@@ -172,37 +226,54 @@ class Player:
 
 
 _NO_BREAK = "\N{NO-BREAK SPACE}"
-_OTHER_KEYS = ("n note", "u undo", "q quit")
+OTHER_KEYS = ("n note", "w where", "u undo", "q quit")
+"""The keys besides those that mark."""
+MOST_CHOICES = 10
+"""So many lines show places to choose from."""
 PLAYER_HELP = ("space go or stop", "arrows 5 s, 60 s", ", . 1 s", "+ - speed")
 
 
 class View(NamedTuple):
     """What is shown beside the session: ``title`` and ``status`` lines, the time at which the
-    mission began, the time now (None where unknown), further keys."""
+    mission began, the time now (None where unknown), further keys, the places of the graph."""
 
     title: str
     status: tuple[str, ...]
     start_ns: int
     now_ns: int | None
     help: tuple[str, ...] = ()
+    places: tuple[Place, ...] = ()
 
 
 def screen(session: Session, view: View, width: int, height: int) -> list[str]:
     """The lines to show, none wider than ``width``, at most ``height``: the newest marks last."""
     keys = [f"{key} {MEANINGS[kind]}" for key, kind in _KEYS.items()]
-    more = "  ".join(key.replace(" ", _NO_BREAK) for key in (*_OTHER_KEYS, *view.help))
+    more = "  ".join(key.replace(" ", _NO_BREAK) for key in (*OTHER_KEYS, *view.help))
     above = [view.title, *view.status, *keys, more]
     lines = [part for line in above for part in folded(line, width)]
-    foot = [session.said]
-    if session.typing is not None:
-        foot = [f"note: {session.typing}_"]
-    foot = [part for line in foot for part in folded(line, width)]
+    foot = [part for line in asked(session) or [session.said] for part in folded(line, width)]
+    foot = [*to_choose(session, width, height - len(lines) - len(foot) - 2), *foot]
     room = max(1, height - len(lines) - len(foot) - 1)
     shown = session.marks[-room:]
     of_all = f"{len(session.marks)} marks" if len(session.marks) != 1 else "1 mark"
     lines.append(cut(of_all + (":" if shown else ""), width))
     lines += [cut(_line(mark, view), width) for mark in shown]
     return (lines + foot)[:height]
+
+
+def asked(session: Session) -> list[str]:
+    """The lines that ask the observer to type; none if nothing is being typed."""
+    if session.naming is not None:
+        prompt = f"where (number, name or part): {session.naming.typed}_"
+        return [session.said, prompt] if session.said else [prompt]
+    return [] if session.typing is None else [f"note: {session.typing}_"]
+
+
+def to_choose(session: Session, width: int, room: int) -> list[str]:
+    """The places to choose from while one is being named, in at most so many lines."""
+    if session.naming is None:
+        return []
+    return [cut(line, width) for line in session.naming.lines(min(MOST_CHOICES, max(0, room)))]
 
 
 def clock_text(time_ns: int) -> str:

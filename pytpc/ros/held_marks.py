@@ -9,6 +9,7 @@ from collections import deque
 from typing import NamedTuple
 
 from pytpc.base.wording import many
+from pytpc.recording.graph_places import Place
 from pytpc.recording.marking_session import MarkChange, View
 from pytpc.recording.marks import (
     MARK_TYPES,
@@ -46,6 +47,7 @@ class HeldMarks(ABC):
         self._observer = observer
         self._what = what
         self._start_ns: int | None = None
+        self._places: tuple[Place, ...] = ()
         self._held: deque[_HeldMark] = deque()
         self._dropped = 0
         self._sending = threading.Lock()
@@ -85,7 +87,8 @@ class HeldMarks(ABC):
             kept = f"{many(self.held, 'message')} kept for a recorder that starts"
             heard += f"; {kept} within {HELD_S:.0f} s"
         status = f"{fault or 'connected'}; {heard}; {clock}"
-        return View(f"{self._what}{who} on {place}", (status,), self._start_ns or 0, now_ns)
+        title = f"{self._what}{who} on {place}"
+        return View(title, (status,), self._start_ns or 0, now_ns, places=self._places)
 
     def _heard(self, listeners: int) -> str:
         """Who listens, in words."""

@@ -280,6 +280,32 @@ def deaf() -> Iterator[str]:
         yield f"http://{HOST}:{listener.getsockname()[1]}/"
 
 
+def test_an_observer_chooses_from_what_the_master_knows(master):
+    master.state = [[["/out", ["/a"]]], [["/out", ["/b"]]], [["/go", ["/a"]]]]
+    master.types = [["/out", "std_msgs/Bool"]]
+    marks = GraphMarks(master.rpc.uri, "ana", advertise=False)
+    try:
+        wait_for(lambda: marks.view().places, LIMIT_S)
+        assert [str(place) for place in marks.view().places] == [
+            "/out (std_msgs/Bool)",
+            "/go (service)",
+            "/a (node)",
+            "/b (node)",
+        ]
+    finally:
+        marks.close()
+
+
+def test_an_observer_can_mark_where_the_master_tells_no_places(master):
+    marks = GraphMarks(master.rpc.uri, "ana", advertise=False)
+    try:
+        wait_for(lambda: marks.view().status[0].startswith("connected;"), LIMIT_S)
+        assert marks.view().places == ()
+        assert marks._thread.is_alive()
+    finally:
+        marks.close()
+
+
 def test_nothing_waits_for_a_deaf_master_at_the_end(deaf):
     marks = GraphMarks(deaf, "ana")
     ends(marks.close)

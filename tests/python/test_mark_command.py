@@ -12,7 +12,9 @@ import pytest
 from mission_samples import BagFile, line, ns
 
 from pytpc.ingest.reading import read
+from pytpc.recording.graph_file import GRAPH_FILE, write_graph
 from pytpc.recording.marks import Mark, marks_beside, read_marks, write_marks
+from pytpc.static.wiring import GraphTopic
 from terminals import Terminal, pytpc
 
 START = 100.0
@@ -100,6 +102,60 @@ def test_a_note_that_a_signal_interrupts_is_kept(bag: Path, tmp_path: Path, numb
         terminal.wait_for("note: laut_")
         assert terminal.end(number) == 128 + number
     assert read_marks(marks_beside(bag)) == (Mark(ns(100), "II", "", "laut"),)
+
+
+@pytest.fixture
+def graph(bag: Path) -> None:
+    """What the robot of the mission publishes, as `record` leaves it beside the bag."""
+    topics = {
+        name: GraphTopic(kind, frozenset({"/driver"}), frozenset({"/base"}))
+        for name, kind in {"/cmd_vel": "geometry_msgs/Twist", "/odom": "nav_msgs/Odometry"}.items()
+    }
+    write_graph(topics, bag.with_name(GRAPH_FILE))
+
+
+@pytest.mark.usefixtures("graph")
+def test_the_place_of_a_mark_is_chosen_from_the_recorded_graph(bag: Path, tmp_path: Path):
+    with Terminal(pytpc("mark", str(bag)), tmp_path) as terminal:
+        terminal.wait_for("w where")
+        terminal.press("2w")
+        terminal.wait_for("1 /cmd_vel (geometry_msgs/Twist)")
+        terminal.press("1q\r")
+        terminal.wait_for("not a ROS name: 1q")
+        terminal.press("\x7f\r")
+        terminal.wait_for("wrong at /cmd_vel")
+        assert read_marks(marks_beside(bag)) == (Mark(ns(100), "II", "", "@/cmd_vel"),)
+        terminal.press("q")
+        assert terminal.wait() == 0
+
+
+@pytest.mark.usefixtures("graph")
+def test_a_place_is_chosen_where_the_cursor_cannot_move(bag: Path, tmp_path: Path):
+    with Terminal(pytpc("mark", str(bag)), tmp_path, env={"TERM": "dumb"}) as terminal:
+        terminal.wait_for("w where")
+        terminal.press("1w")
+        asked = "where (number, name or part; Enter ends it):"
+        terminal.wait_for(f"   3 /base (node)\r\n   4 /driver (node)\r\n{asked}")
+        terminal.press("odo")
+        terminal.press("\r")
+        terminal.wait_for("wrong at /odom")
+        # Typing has shown the list no second time.
+        assert "/cmd_vel" not in terminal.text
+        assert "\x1b" not in terminal.output.decode()
+        terminal.press("q")
+        assert terminal.wait() == 0
+    assert read_marks(marks_beside(bag)) == (Mark(ns(100), "I", "", "@/odom"),)
+
+
+def test_a_broken_graph_leaves_typing(bag: Path, tmp_path: Path):
+    bag.with_name(GRAPH_FILE).write_text("[]")
+    with Terminal(pytpc("mark", str(bag)), tmp_path, columns=400) as terminal:
+        terminal.wait_for("not the graph of a mission")
+        terminal.press("1w")
+        terminal.wait_for("no place is known: type a name")
+        terminal.press("base_link\rq")
+        assert terminal.wait() == 0
+    assert read_marks(marks_beside(bag)) == (Mark(ns(100), "I", "", "@base_link"),)
 
 
 def test_two_observers_at_once_and_again(bag: Path, tmp_path: Path):

@@ -51,6 +51,7 @@ class MasterServer:
         self.publishers: dict[str, list[str]] = {}
         self.subscribers: dict[str, str] = {}
         self.state: list = [[], [], []]
+        self.types: list | None = None
         self.nodes: dict[str, str] = {}
         self.params: dict[str, object] = {}
         self.answers = threading.Event()
@@ -64,6 +65,8 @@ class MasterServer:
             "lookupNode": lambda: self.nodes[arguments[1]],
             "hasParam": lambda: arguments[1] in self.params,
         }
+        if self.types is not None:
+            asked["getTopicTypes"] = lambda: self.types
         if method in asked:
             return [1, "", asked[method]()]
         if method == "registerSubscriber":

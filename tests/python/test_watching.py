@@ -18,6 +18,7 @@ from pytpc.diagnosis.ranking.watching import BINS, KeptRankings, Watching
 from pytpc.diagnosis.results.live import Look, Seen
 from pytpc.diagnosis.scores.live_scores import LiveRanking
 from pytpc.present.watch_screen import LAYOUTS, Panel, Status, WatchOptions, table, watch_screen
+from pytpc.recording.graph_places import Naming, Place
 from pytpc.recording.marking_session import MarkChange, Session, View
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import ReadName, Recording
@@ -278,6 +279,19 @@ def test_what_is_being_written_is_shown_however_small_the_screen_is():
     for height in (1, 3, 10):
         session = Session("", (Mark(105 * S, "I"),), typing="stuck")
         assert texts(shown(40, height, session=session))[-1] == "note: stuck_"
+
+
+def test_the_places_to_choose_from_are_above_the_question():
+    naming = Naming(tuple(Place(f"/t{number}", "x") for number in range(100)), "t9")
+    session = Session("", (Mark(105 * S, "I"),), naming=naming)
+    lines = texts(shown(80, 24, session=session))
+    assert lines[-1] == "where (number, name or part): t9_"
+    first = lines.index("> 10 /t9 (x)")
+    assert lines[first + 1] == "  91 /t90 (x)"
+    for height in (1, 2, 5, 12, 24, 60):
+        lines = texts(shown(40, height, session=session))
+        assert len(lines) <= height
+        assert lines[-1].endswith("t9_")
 
 
 def test_without_utf8_all_is_ascii():

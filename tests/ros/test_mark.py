@@ -98,6 +98,30 @@ def test_keys_of_two_observers_are_marks_in_the_bag(graph: RosGraph, tmp_path: P
     assert sorted(files, key=Mark.order) == list(found)
 
 
+def test_where_it_was_wrong_is_chosen_from_the_graph_and_goes_with_the_note(
+    graph: RosGraph, tmp_path: Path
+):
+    talker = RawPublisher(Master(graph.uri, "/talker"), {"/out": CLOCK})
+    heard = RawSubscriber(Master(graph.uri, "/listener"), "127.0.0.1", ["/ana/mark_note"])
+    try:
+        talker.register()
+        with mark(graph, tmp_path, "ana") as ana:
+            ana.wait_for("1 node listening")
+            ana.press("1w")
+            ana.wait_for("1 /out (")
+            ana.press("ou\r")
+            ana.wait_for("wrong at /out")
+            end(ana)
+        until = time.monotonic() + 10
+        while not (notes := [message for _, message in heard.poll(0.1)]):
+            assert time.monotonic() < until
+    finally:
+        heard.close()
+        talker.close()
+    assert notes[0].endswith(b",@/out")
+    assert [one.where for one in read_marks(tmp_path / "ana.csv")] == [("/out",)]
+
+
 # The listener hears of the topics from the master at once; rosbag asks it once a second.
 # The first mark has to wait for both, although the observer leaves right after it.
 @pytest.mark.parametrize("command", ["mark", "watch"])

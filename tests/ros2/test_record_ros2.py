@@ -10,7 +10,7 @@ from pathlib import Path
 
 from patience import PATIENCE_S
 from pytpc.ingest.reading import read
-from pytpc.recording.graph_file import read_graph
+from pytpc.recording.graph_file import read_graph, read_recorded_graph
 from pytpc.recording.parameter_values import ParameterValues
 from pytpc.static.static_info import StaticInfo
 from ros2_commands import (
@@ -129,11 +129,18 @@ def test_marks_of_two_observers_are_ranked_by(env: dict[str, str], tmp_path: Pat
                 terminal.wait_for("1 node listening", PATIENCE_S)
                 terminal.press(press)
                 terminal.wait_for("type", PATIENCE_S)
+                terminal.press("w")
+                terminal.wait_for("/robot1/guard (node)", PATIENCE_S)
+                terminal.press("guard\r")
+                terminal.wait_for("wrong at /robot1/guard", PATIENCE_S)
                 terminal.press("q")
                 assert terminal.wait(PATIENCE_S) == 0
         interrupted(process)
     found = read(tmp_path / "mission/mission.mcap")
     assert [(one.observer, one.type) for one in found.marks] == [("ana", "I"), ("ben", "II")]
+    assert [one.where for one in found.marks] == [("/robot1/guard",)] * 2
+    services = read_recorded_graph(tmp_path / "mission").services
+    assert services["/robot1/guard/get_parameters"] == {"/robot1/guard"}
     assert all(found.start_ns <= one.time_ns <= found.end_ns for one in found.marks)
     assert "limits.speed" in told(env, tmp_path, "rank", "mission")
 

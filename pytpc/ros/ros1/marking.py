@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import secrets
 import threading
@@ -10,6 +11,7 @@ from collections.abc import Callable
 
 from pytpc.base.errors import RunError
 from pytpc.ingest.ros1 import decode_time
+from pytpc.recording.graph_places import places_of
 from pytpc.recording.marking_session import View
 from pytpc.ros.held_marks import HeldMarks, times_and_note
 from pytpc.ros.ros1.master import Master
@@ -29,6 +31,8 @@ _LOOK_S = 1.0
 _FOUND_S = 1.5
 # How long messages wait for subscribers that the master knows and that have not connected yet.
 _CONNECTED_S = 5.0
+# How old the places to choose from may be.
+_PLACES_S = 5.0
 
 
 class GraphMarks(HeldMarks):
@@ -53,6 +57,7 @@ class GraphMarks(HeldMarks):
         self._advertise = advertise
         self._publisher: RawPublisher | None = None
         self._new = _NewNode()
+        self._placed_at = 0.0
         self._fault = f"waiting for the ROS master at {master}"
         self._simulated = False
         self._clock_ns: int | None = None
@@ -139,6 +144,11 @@ class GraphMarks(HeldMarks):
             self._new.look(self._master, self._publisher)
             # A terminal that is stopped keeps no mark back.
             self.tick()
+        if time.monotonic() >= self._placed_at + _PLACES_S:
+            # Without them an observer can still type a name.
+            with contextlib.suppress(RunError):
+                self._places = places_of(self._master.connections())
+            self._placed_at = time.monotonic()
 
     def _hear(self, message: bytes) -> None:
         try:

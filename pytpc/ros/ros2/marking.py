@@ -9,11 +9,13 @@ from threading import Event, Thread
 
 from pytpc.base.errors import RunError
 from pytpc.ingest.ros2 import decode_time
+from pytpc.recording.graph_places import places_of
 from pytpc.recording.marking_session import View
 from pytpc.ros.held_marks import HeldMarks, times_and_note
 from pytpc.ros.intake import CLOCK
 from pytpc.ros.ros2.address import Ros2Address
-from pytpc.ros.ros2.agent_process import Agent
+from pytpc.ros.ros2.agent_process import Agent, Graph
+from pytpc.static.wiring import Connections
 
 TIME = "builtin_interfaces/msg/Time"
 STRING = "std_msgs/msg/String"
@@ -21,6 +23,8 @@ _CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 _HEAD = b"\0\1\0\0"
 _TIME = struct.Struct("<iI")
 _TICK_S = 0.2
+# How old the places to choose from may be.
+_PLACES_S = 5.0
 
 
 def encode_time(time_ns: int) -> bytes:
@@ -58,6 +62,9 @@ class Ros2Marks(HeldMarks):
         self._agent.subscribe(CLOCK, _CLOCK_TYPE)
         self._since = time.monotonic()
         self._clock_ns: int | None = None
+        self._places_at = 0.0
+        self._placed: Graph | None = None
+        self._is_asked = False
         self._ended = Event()
         self._thread = Thread(target=self._listen, name="clock", daemon=True)
         self._thread.start()
@@ -116,3 +123,19 @@ class Ros2Marks(HeldMarks):
                 self._ended.wait(_TICK_S)
             # A terminal that is stopped keeps no mark back.
             self.tick()
+            self._look()
+
+    def _look(self) -> None:
+        """Ask for the places to choose from; the clock does not wait for them."""
+        graph = self._agent.graph
+        is_old = graph is not self._placed or time.monotonic() >= self._places_at
+        if is_old and not self._is_asked:
+            self._placed, self._is_asked = graph, True
+            with contextlib.suppress(RunError):
+                self._agent.connections_later(self._take_places)
+
+    def _take_places(self, found: Connections | None) -> None:
+        if found is not None:
+            self._places = places_of(found)
+        self._places_at = time.monotonic() + _PLACES_S
+        self._is_asked = False
