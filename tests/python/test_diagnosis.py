@@ -176,11 +176,18 @@ def test_the_baseline_is_a_witness():
     assert either == pytest.approx({"~gate": 1.5, "~noisy": 3.0, "~safe": 1.5, **nobody})
 
 
-# At the median z = 0: 3/8 / (sigma t). Before the mark there is no reaction.
+# At the median z = 0: 3/8 / (sigma t), of the 0.775 that are in time. Before the mark there is no
+# reaction; 15 s later than the median are those that are late by as much, and the rest of the
+# others.
 def test_reactions_by_hand():
     median = math.exp(REACTION_LOG)
     density = reaction(np.array([median, -1.0, 0.0]))
-    assert density.tolist() == pytest.approx([0.375 / (REACTION_SIGMA * median), 0.0, 0.0])
+    in_time = 0.775 * 0.375 / (REACTION_SIGMA * median)
+    assert density.tolist() == pytest.approx([in_time, 0.0, 0.0])
+    z = math.log((median + 15) / median) / REACTION_SIGMA
+    rest = 0.775 * 0.375 * (1 + z * z / 4) ** -2.5 / (REACTION_SIGMA * (median + 15))
+    late = 0.15 * 0.375 / (REACTION_SIGMA * median)
+    assert reaction(np.array([median + 15]))[0] == pytest.approx(rest + late)
     # It is a density: its integral over log t from far left to far right is 1.
     logs = np.linspace(-40, 40, 80001)
     assert float(np.sum(reaction(np.exp(logs)) * np.exp(logs)) * 0.001) == pytest.approx(
@@ -231,12 +238,13 @@ def test_what_an_observer_says_first_counts_most():
 # part is log (0.3 f(3) + 0.015 f(33)) / (0.315 + 0.3), f(d) = 0.1 + 0.9 * 79.53 p(d).
 # The mean of f over causes from 0 to 33 s is 0.1 + 0.9 * 79.53 / 33 times the share F of reactions
 # below 33 s, where z = (log 33 - 1.946) / 1.17 = 1.3252 and, of t with four degrees of freedom,
-# F = 1/2 + 3/8 z/sqrt(1 + z^2/4) (1 - z^2/(12 + 3 z^2)) = 0.8721.
+# F = 1/2 + 3/8 z/sqrt(1 + z^2/4) (1 - z^2/(12 + 3 z^2)) = 0.8721; below 18 s (late by 15 s) it is
+# 0.7676, below 3 s (late by 30 s) 0.2545: 0.775 F + 0.15 * 0.7676 + 0.075 * 0.2545 = 0.8101.
 def test_acted_by_hand():
     streams = ResultStreams.of(events(gate_case()), Tpcs.of(STATIC))
     found = mark_evidence(streams, marked(np.array([ns(33)]), ("",), streams))
     f = STRAY + (1 - STRAY) * 79.53 * reaction(np.array([3.0, 33.0]))
-    chance = STRAY + (1 - STRAY) * 79.53 / 33 * 0.8721
+    chance = STRAY + (1 - STRAY) * 79.53 / 33 * 0.8101
     expected = math.log((0.3 * f[0] + 0.015 * f[1]) / 0.615) - math.log(chance)
     assert streams.seconds == pytest.approx(79.53)
     assert found.acted[0] == pytest.approx(expected, abs=0.01)
@@ -255,7 +263,7 @@ def test_what_is_evaluated_once_may_have_passed_at_once():
         found = mark_evidence(streams, marked(np.array([ns(33)]), ("",), streams))
         weighed.append(math.exp(found.acted[0]))
     assert weighed[0] / weighed[1] == pytest.approx((0.32 / 0.62) / (0.04 / 0.34))
-    chance = STRAY + (1 - STRAY) * 79.5 / 33 * 0.8721
+    chance = STRAY + (1 - STRAY) * 79.5 / 33 * 0.8101
     assert weighed[0] == pytest.approx(0.32 * f / 0.62 / chance, rel=0.01)
 
 

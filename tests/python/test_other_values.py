@@ -129,7 +129,7 @@ def test_the_size_of_the_change_is_not_asked():
 
 
 def test_what_is_turned_in_the_whole_wait_is_charged_where_nothing_is_done():
-    marks = (40, 47, 54, 61)
+    marks = (75, 82, 89, 96)
     others = {key(0): 4.0, key(1): 3.9}
     found = replayed(recording(mission(), *marks, kind="II"), STATIC, others)
     assert found["~height"] > found["~speed"]
