@@ -9,6 +9,7 @@ from pytpc_evaluation.study.judge import place, position
 from pytpc_evaluation.study.metrics import (
     calibration_error,
     estimate,
+    exact_share,
     reliability,
     share,
     upper_limit,
@@ -133,3 +134,17 @@ def test_the_error_of_calibration_and_its_interval():
 def test_the_error_of_calibration_is_that_of_bins():
     assert calibration_error([0.5, 0.5], [0, 1], "ab").value == 0.0
     assert calibration_error([0.3, 0.7], [1, 0], "ab").value == pytest.approx(0.7)
+
+
+# Of 10 treatments 9.5 are right: between 9 of 10 (0.555, 0.997) and 10 of 10 (0.692, 1).
+def test_an_exact_share_lies_between_whole_numbers():
+    whole = exact_share([1.0] * 9 + [0.0], list(range(10)))
+    assert (whole.low, whole.high) == pytest.approx((0.555, 0.997), abs=0.001)
+    every = exact_share([1.0] * 10, list(range(10)))
+    assert (every.low, every.high) == pytest.approx((0.692, 1.0), abs=0.001)
+    # The last treatment has two missions.
+    between = exact_share([1.0] * 10 + [0.0], [*range(10), 9])
+    assert between.value == pytest.approx(0.95)
+    assert whole.low < between.low < every.low
+    assert whole.high < between.high < every.high
+    assert exact_share([0.0] * 10, list(range(10))).high == pytest.approx(1 - every.low)

@@ -42,6 +42,7 @@ SCHEMA = pa.schema(
         pa.field("digest", pa.string()),
         pa.field("tied", pa.int64()),
         pa.field("round", pa.int64()),
+        pa.field("none", pa.float64()),
     ]
 )
 
@@ -51,7 +52,8 @@ class Judged:
     """A row: one verdict. ``position`` and ``confidence`` are None where there is none.
 
     ``digest`` is `verdict_digest`, empty where it is not known. ``tied`` is how many parameters
-    share the position, itself among them; ``round`` is when the treatment was made.
+    share the position, itself among them; ``round`` is when the treatment was made. ``none`` is the
+    probability that it is none of the parameters.
     """
 
     system: str
@@ -70,6 +72,7 @@ class Judged:
     digest: str = ""
     tied: int = 1
     round: int = 1
+    none: float | None = None
 
 
 class MeanPlace(NamedTuple):
@@ -119,6 +122,7 @@ def judge(
                     marks,
                     tied=1 if found is None else found.tied,
                     round=mission.round,
+                    none=verdict.none if marks and not np.isnan(verdict.none) else None,
                 )
 
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from scipy.special import bdtri
+from scipy.special import bdtri, betaincinv
 
 from pytpc.diagnosis.results.suspects import SURE
 
@@ -90,6 +90,30 @@ def share(values: npt.ArrayLike, units: Sequence[object]) -> Estimate:
         low, high = (end, 1.0) if found.value else (0.0, 1.0 - end)
         return found._replace(low=low, high=high)
     return found
+
+
+def exact_share(values: npt.ArrayLike, units: Sequence[object]) -> Estimate:
+    """The mean over units of values in [0, 1], with Clopper and Pearson's 95 % interval.
+
+    A unit whose values differ counts with its mean; the interval is that of so many of all units,
+    also between whole numbers. It is wide enough near 0 and 1, where the bootstrap's is not.
+
+    Args:
+        values: float64[n].
+        units: whose each value is; n of them.
+
+    Returns:
+        All nan where there is no value.
+    """
+    numbers = np.asarray(values, dtype=np.float64)
+    codes = _codes(units)
+    if not codes.size:
+        return Estimate(np.nan, np.nan, np.nan, 0)
+    means = np.bincount(codes, numbers) / np.bincount(codes)
+    count, of = float(means.sum()), means.size
+    low = float(betaincinv(count, of - count + 1, _TAIL)) if count > 0 else 0.0
+    high = float(betaincinv(count + 1, of - count, 1 - _TAIL)) if count < of else 1.0
+    return Estimate(count / of, low, high, of)
 
 
 def upper_limit(count: int, of: int) -> float:

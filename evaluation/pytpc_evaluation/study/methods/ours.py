@@ -61,4 +61,5 @@ def verdict(found: Posterior) -> Verdict:
         tuple(found.names[n] for n in order),
         float(found.posterior[order[0]]) if order else 0.0,
         tuple(float(found.scores[n]) for n in order),
+        found.none,
     )

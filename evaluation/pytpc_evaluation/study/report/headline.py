@@ -99,7 +99,7 @@ def headlines(
     # What is clean or has a fault belongs to no round: it is told of the halves.
     for kind, what in (("clean", "clean missions"), ("fault", "faults in the source")):
         for end, (words, method) in _RANKED.items():
-            if part.since > 1 or method not in (OURS, BESIDE_CLEAN):
+            if part.round is not None or method not in (OURS, BESIDE_CLEAN):
                 continue
             made = false_accusations(positions, part.half, kind, method)
             # Where nobody set a mark nobody could be accused.

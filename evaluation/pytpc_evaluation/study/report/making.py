@@ -33,6 +33,7 @@ from pytpc_evaluation.study.report.judged import (
     told_judgings,
 )
 from pytpc_evaluation.study.report.judging import by_own_marks
+from pytpc_evaluation.study.report.observer import observer_table
 from pytpc_evaluation.study.report.original import Original
 from pytpc_evaluation.study.report.other_people import others_table, parts_with_others
 from pytpc_evaluation.study.report.page import BESIDE, IMAGES, Contents, page, tables_page
@@ -263,7 +264,7 @@ def _tables(
 ) -> tuple[dict[str, Table], dict[str, Table]]:
     """The tables of the page by label, and those that are too long for it by their file's name."""
     systems, parts, positions = study.systems, results.parts, results.positions
-    halves = [part.half for part in parts if part.since == 1]
+    halves = [part.half for part in parts if part.round is None]
     found = [
         systems_table(systems),
         treatments_table(systems),
@@ -277,6 +278,7 @@ def _tables(
         *(main_table(positions, part) for part in parts),
         *(against_table(positions, part) for part in parts),
         *(users_table(positions, part) for part in parts),
+        *(observer_table(positions, part) for part in parts),
         *(others_table(results.others, p) for p in parts_with_others(results.others, parts)),
         *(positions_table(positions, labels) for labels in LABELS),
         *(

@@ -17,7 +17,7 @@ from pytpc_evaluation.study.data import ALL
 from pytpc_evaluation.study.judge import Judged
 from pytpc_evaluation.study.metrics import within
 
-_LATER = frozenset({"digest", "tied", "round"})
+_LATER = frozenset({"digest", "tied", "round", "none"})
 """Tables that were written before them do not have these columns."""
 
 
