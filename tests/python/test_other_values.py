@@ -6,8 +6,15 @@ import numpy as np
 import pytest
 from mission_samples import comparison, events, key, ns, static_info
 
-from pytpc.diagnosis.ranking.known_good import UNCHANGED, before_changes, of_good_run
-from pytpc.diagnosis.ranking.other_values import diagnose_replayed
+from pytpc.diagnosis.ranking.known_good import (
+    MOST_SETTINGS,
+    SET_ANEW,
+    UNCHANGED,
+    before_changes,
+    of_good_run,
+    of_settings,
+)
+from pytpc.diagnosis.ranking.other_values import diagnose_beside, diagnose_replayed
 from pytpc.diagnosis.ranking.replayed_outcomes import ACQUITTED, replayed, turns
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.scores.score_tables import Tpcs
@@ -148,3 +155,43 @@ def test_the_replay_decides_among_what_differs():
 def test_without_marks_nobody_is_charged():
     found = diagnose_replayed(recording(mission()), STATIC, np.zeros(4), {key(0): 4.0})
     assert (found.order, found.none) == ([], 1.0)
+
+
+def set_anew(*values, every=10.0):
+    """height's threshold has these values in turn; what it is compared with is 3 all the time."""
+    rows = []
+    for tick in range(160):
+        t = tick / 2
+        limit = values[min(int(t / every), len(values) - 1)]
+        rows.append((t, 0, limit < 3.0, 3.0, limit))
+        rows.append((t + 0.01, 1, t % 9 > 4, t % 9, 4))
+    return rows
+
+
+def test_what_was_set_while_it_ran_is_replayed_with_its_first_value():
+    tpcs = Tpcs.of(STATIC)
+    found = of_settings(tpcs, events(set_anew(5, 2)))
+    assert found.others == {key(0): 5.0}
+    assert found.prior[tpcs.names.index("~height")] == SET_ANEW
+    assert np.isnan(np.delete(found.prior, tpcs.names.index("~height"))).all()
+
+
+def test_a_threshold_that_is_worked_out_is_no_setting():
+    values = range(MOST_SETTINGS + 1)
+    assert of_settings(Tpcs.of(STATIC), events(set_anew(*values, every=5.0))).others == {}
+
+
+# Two nodes run the code, each with its own value.
+def test_a_setting_of_another_node_is_no_change():
+    rows = [(t, 0, 1, 3, 2 + t % 2, f"/n{t % 2}") for t in range(20)]
+    assert of_settings(Tpcs.of(STATIC), events(rows)).others == {}
+
+
+# The good run had both values of speed's threshold, and only the first one of height's.
+def test_who_sets_a_wrong_value_while_it_runs_is_found():
+    mission = recording(set_anew(5, 5, 2), 28, 35, kind="I")
+    good = recording(set_anew(5))
+    for references in ((), (good,)):
+        found = diagnose_beside(mission, STATIC, references=references)
+        assert found.names[found.order[0]] == "~height"
+        assert found.posterior[found.order[0]] > 0.5

@@ -1,4 +1,4 @@
-"""Which values are known to be good: of good runs, from before changes, and defaults in the code.
+"""Which values are known to be good: of good runs, from before a change, and defaults in the code.
 
 Each source gives a prior, the log odds of each parameter to be the cause, and the other thresholds
 of those that differ, which are replayed (`pytpc.diagnosis.ranking.replayed_outcomes`).
@@ -34,6 +34,13 @@ is known, and a threshold acts in one direction."""
 DEFAULT = -3.0
 """The same of one that has the default of its code. Not as little as ``UNCHANGED``, because a
 default may not fit to this robot."""
+
+SET_ANEW = 1.0
+"""The same of one that was set anew while the mission ran: hardly any are, and a robot that went
+right before goes wrong after it. By reason, the study has none."""
+
+MOST_SETTINGS = 8
+"""A threshold that changes more often in a node is worked out, and not set."""
 
 _CLOSE = 1e-6
 """A default that the code computes, or keeps in a float, is the threshold up to this part."""
@@ -137,6 +144,22 @@ def of_defaults(static_info: StaticInfo, tpcs: Tpcs, events: Events) -> KnownGoo
         prior[name] = max(prior.get(name, DEFAULT), DEFAULT if same else 0.0)
         if not same:
             others[key] = then
+    return KnownGood(_by_name(tpcs, prior), others)
+
+
+def of_settings(tpcs: Tpcs, events: Events) -> KnownGood:
+    """What was set anew while the mission ran; the other threshold is the first one."""
+    own = events.with_keys(tpcs.keys)
+    prior: dict[str, float] = {}
+    others: dict[str, float] = {}
+    for code in np.flatnonzero(np.isnan(thresholds_of(events, tpcs))).tolist():
+        rows = own.by_key.rows(code)
+        for node in np.unique(own.node[rows]).tolist():
+            values = own.thresh[rows[own.node[rows] == node]]
+            switched = np.count_nonzero(values[1:] != values[:-1])
+            if np.isfinite(values).all() and 0 < switched < MOST_SETTINGS:
+                prior[tpcs.parameters[code]] = SET_ANEW
+                others[tpcs.keys[code]] = float(values[0])
     return KnownGood(_by_name(tpcs, prior), others)
 
 

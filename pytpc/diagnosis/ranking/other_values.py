@@ -21,6 +21,7 @@ from pytpc.diagnosis.ranking.known_good import (
     of_changes,
     of_defaults,
     of_references,
+    of_settings,
 )
 from pytpc.diagnosis.ranking.posterior import Posterior, diagnose_log, softmax
 from pytpc.diagnosis.ranking.reach import reach_prior
@@ -136,6 +137,7 @@ def _by_values(
     tpcs = Tpcs.of(static_info)
     here = with_summarised(recording)
     default = of_defaults(static_info, tpcs, here)
+    anew = of_settings(tpcs, here)
     found: list[KnownGood] = []
     if changes:
         # The last value for a parameter counts.
@@ -144,16 +146,18 @@ def _by_values(
         found.append(KnownGood(of_changes(tpcs.names, changes), old))
     if references:
         found.append(of_references(tpcs, here, [with_summarised(run) for run in references]))
-    if not found:
-        # If all have their defaults, these tell nobody from anybody else.
-        if not default.others:
-            return diagnose_log(recording, static_info)
+    if found:
+        prior = np.fmin.reduce([one.prior for one in found])
+        prior[np.isnan(prior)] = UNCHANGED / 2
+        prior += np.nan_to_num(default.prior)
+    elif default.others or anew.others:
         prior = np.where(np.isnan(default.prior), _unknown(default.prior), default.prior)
-        return diagnose_replayed(recording, static_info, prior, default.others, none_score)
-    prior = np.fmin.reduce([one.prior for one in found])
-    prior[np.isnan(prior)] = UNCHANGED / 2
-    prior += np.nan_to_num(default.prior)
-    others = {key: value for one in found for key, value in one.others.items()}
+        found.append(default)
+    else:
+        # If all have their defaults, these tell nobody from anybody else.
+        return diagnose_log(recording, static_info)
+    prior = np.where(np.isnan(anew.prior), prior, anew.prior)
+    others = {key: value for one in (*found, anew) for key, value in one.others.items()}
     return diagnose_replayed(recording, static_info, prior, others, none_score)
 
 
