@@ -7,7 +7,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
-from mission_samples import comparison, events, ns, static_info
+from mission_samples import comparison, events, key, ns, static_info
 
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.ranking.posterior import diagnose_log
@@ -20,6 +20,7 @@ from pytpc_evaluation.study.fit import REASONED, Batch, fit, samples
 from pytpc_evaluation.study.judge import judge, position, save_positions
 from pytpc_evaluation.study.methods import METHODS
 from pytpc_evaluation.study.methods.importance import importance, importance_of, windows
+from pytpc_evaluation.study.methods.ours import _with_other_defaults
 from pytpc_evaluation.study.methods.plain import (
     by_chance,
     differs_at_random,
@@ -269,3 +270,23 @@ def test_the_loss_is_that_of_the_posterior():
     case = mission(marks).case("typed")
     found = diagnose_log(case.recording, STATIC, weights=REASONED)
     assert Batch.of([sample]).loss(REASONED) == pytest.approx(-math.log(found.posterior[0]))
+
+
+# Only the defaults are others, drawn by the mission: the same each time.
+def test_other_defaults_are_drawn_for_each_mission():
+    found = [comparison(n, f"~p{n}", default=value) for n, value in enumerate((2.0, 0.0, True) * 9)]
+    static = static_info(*found, comparison(99, "~unknown"))
+    rows = [(t, n, t > 5, t, 5) for t in range(10) for n in range(27)]
+    mission = Recording("m", events(rows), (Mark(ns(8), "I"),), 0, ns(10))
+    drawn = [_with_other_defaults(Case(mission, static)) for _ in range(2)]
+    assert drawn[0] == drawn[1]
+    changed = [
+        (before.default, after.default)
+        for before, after in zip(found, drawn[0].units[0].comparisons, strict=False)
+        if before.default != after.default
+    ]
+    assert 5 < len(changed) < 17
+    assert all(2 / 3 <= after <= 6 for before, after in changed if before == 2.0)
+    assert {after for before, after in changed if before == 0.0} == {1.0}
+    assert {after for before, after in changed if before is True} == {False}
+    assert drawn[0].comparisons[key(99)].default is None

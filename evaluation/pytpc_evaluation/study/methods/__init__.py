@@ -11,6 +11,7 @@ from pytpc_evaluation.study.methods.ours import (
     tpc,
     tpc_changes,
     tpc_log,
+    tpc_other_defaults,
     tpc_reference,
     tpc_where,
 )
@@ -34,6 +35,7 @@ METHODS: Mapping[str, Method] = {
     "random": by_chance,
     "tpc-log": tpc_log,
     "tpc": tpc,
+    "tpc-other-defaults": tpc_other_defaults,
     "tpc+where": tpc_where,
     "tpc+1-run": GoodRuns(1),
     "tpc+2-runs": GoodRuns(2),

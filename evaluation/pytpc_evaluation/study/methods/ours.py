@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import random
+from dataclasses import dataclass, replace
 
 from pytpc.diagnosis.ranking.other_values import diagnose_beside
 from pytpc.diagnosis.ranking.posterior import Posterior, diagnose_log
+from pytpc.diagnosis.scores.score_tables import Tpcs
+from pytpc.static.link_unit import Comparison
+from pytpc.static.parameters import parameter_name
+from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.study.case import Case, Verdict
+
+OTHER_DEFAULTS = 0.4
+"""Of how many parameters ``tpc_other_defaults`` takes the default for another one."""
 
 
 def tpc(case: Case) -> Verdict:
@@ -22,6 +30,38 @@ def tpc_log(case: Case) -> Verdict:
 def tpc_where(case: Case) -> Verdict:
     """With what the observer says of where it was wrong."""
     return verdict(diagnose_beside(case.with_places, case.static_info))
+
+
+def tpc_other_defaults(case: Case) -> Verdict:
+    """As if the defaults in the code were not those of this robot for 40 % of its parameters.
+
+    The robots' files have the values of the code, but for what was changed; other robots' files
+    differ more. The other defaults are drawn for each mission: a switch is turned, a number is up
+    to three times as much or as little.
+    """
+    return verdict(diagnose_beside(case.recording, _with_other_defaults(case)))
+
+
+def _with_other_defaults(case: Case) -> StaticInfo:
+    recording, static = case.recording, case.static_info
+    dice = random.Random(f"{recording.start_ns} {recording.end_ns} {len(recording.events)}")
+    factors = {
+        name: 3.0 ** dice.uniform(-1.0, 1.0)
+        for name in Tpcs.of(static).names
+        if dice.random() < OTHER_DEFAULTS
+    }
+
+    def changed(found: Comparison) -> Comparison:
+        factor, default = factors.get(parameter_name(found)), found.default
+        if factor is None or default is None or isinstance(default, str):
+            return found
+        other = not default if isinstance(default, bool) else default * factor or 1.0
+        return replace(found, default=other)
+
+    units = [
+        replace(unit, comparisons=tuple(map(changed, unit.comparisons))) for unit in static.units
+    ]
+    return replace(static, units=tuple(units))
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,8 +18,17 @@ from pytpc_evaluation.tables import Cell, Column, Table
 SAID = "confused"
 """Types as people say them."""
 
-OURS = ("tpc-log", "tpc", "tpc+where", "tpc+1-run", "tpc+2-runs", "tpc+4-runs", "tpc+2-runs+where",
-        "tpc+reference")  # fmt: skip
+OURS = (
+    "tpc-log",
+    "tpc",
+    "tpc-other-defaults",
+    "tpc+where",
+    "tpc+1-run",
+    "tpc+2-runs",
+    "tpc+4-runs",
+    "tpc+2-runs+where",
+    "tpc+reference",
+)
 """The methods that say how likely it is none of the parameters."""
 
 

@@ -23,10 +23,26 @@ BASELINE = "thesis"
 CHANCE = "random"
 CHANCE_OF_DIFFERENT = "differs-at-random"
 TURNED = "turned-decisions"
-METHODS = (OURS, "tpc-log", "tpc+where", "tpc+1-run", "tpc+2-runs", "tpc+4-runs",
-           "tpc+2-runs+where", BESIDE_CLEAN, "tpc+changes", BASELINE, "thesis-doubt", "importance",
-           TURNED, "largest-change", "recent-change", CHANCE_OF_DIFFERENT,
-           CHANCE)  # fmt: skip
+METHODS = (
+    OURS,
+    "tpc-log",
+    "tpc-other-defaults",
+    "tpc+where",
+    "tpc+1-run",
+    "tpc+2-runs",
+    "tpc+4-runs",
+    "tpc+2-runs+where",
+    BESIDE_CLEAN,
+    "tpc+changes",
+    BASELINE,
+    "thesis-doubt",
+    "importance",
+    TURNED,
+    "largest-change",
+    "recent-change",
+    CHANCE_OF_DIFFERENT,
+    CHANCE,
+)
 TARGETS: Mapping[str, float] = {"typed": 0.90, "untyped": 0.80, "confused": 0.80}
 """The share of treatments with the changed parameter in the top 3 that was aimed at."""
 TARGET_PLACES = 3
