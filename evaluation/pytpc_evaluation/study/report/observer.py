@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 
-from pytpc_evaluation.study.metrics import Estimate, exact_share
-from pytpc_evaluation.study.report.confidence import accuses
+from pytpc_evaluation.study.metrics import Estimate, estimate, exact_share
+from pytpc_evaluation.study.report.confidence import accuses, rightness
 from pytpc_evaluation.study.report.parts import Part
 from pytpc_evaluation.study.report.positions import Position, ordered, with_absent
 from pytpc_evaluation.study.report.ranked import METHODS, percent
@@ -36,7 +36,7 @@ def observer_table(rows: Sequence[Position], part: Part) -> Table:
     """The shares of each method, of missions that the observer marked; in the last column of all.
 
     "None first" and "wrongly accused" are of missions with a wrong parameter, "somebody accused" of
-    those without one.
+    those without one; the Brier score is of all of them.
     """
     own = [
         row
@@ -52,6 +52,7 @@ def observer_table(rows: Sequence[Position], part: Part) -> Table:
             "None first %",
             "Wrongly accused %",
             "Somebody accused %",
+            "Brier score",
             "Top 3 % of all missions",
         )
     )
@@ -67,11 +68,22 @@ def observer_table(rows: Sequence[Position], part: Part) -> Table:
             percent(_share(marked, _is_none_first)) if sure else None,
             percent(_share(marked, _is_wrong)) if sure else None,
             percent(_share(nobody, accuses)) if sure else None,
+            _brier([*marked, *nobody]) if sure else None,
             percent(_share(found, lambda row: row.within(3))),
         )
         lines.append((method, cells))
     title = f"One observer, types as people say them, the {part.title}"
     return Table(f"observer-{part.name}", title, columns, tuple(lines), (), "Method")
+
+
+def _brier(rows: Iterable[Position]) -> str:
+    """The mean squared error of the first suspect's probability (Brier 1950), by bootstrap."""
+    own = [row for row in rows if row.confidence is not None]
+    errors = [((row.confidence or 0.0) - rightness(row)) ** 2 for row in own]
+    found = estimate(errors, [(row.system, row.treatment) for row in own])
+    if not found.treatments:
+        return "-"
+    return f"{found.value:.2f} [{found.low:.2f}, {found.high:.2f}]"
 
 
 def _is_none_first(row: Position) -> bool:
