@@ -62,7 +62,10 @@ STATIC = StaticInfo.of(
 NAMES = Tpcs.of(STATIC).names
 
 
-def mission(*notes, topics=TOPICS):
+SERVICES = {f"{node}/get_loggers": frozenset({node}) for node in NODES}
+
+
+def mission(*notes, topics=TOPICS, services=SERVICES):
     """Each node evaluates its own comparison; the brain that of the shutter, too."""
     rows = [
         (t + n / 100, n, t > 20 + n, t, 20 + n, node)
@@ -72,7 +75,7 @@ def mission(*notes, topics=TOPICS):
     rows += [(t + 0.5, 9, t > 30, t, 30, BRAIN) for t in range(40)]
     marks = tuple(Mark(ns(30 + n), "I", "", note) for n, note in enumerate(notes))
     found = Recording("m", events(sorted(rows)), marks, 0, ns(40))
-    wiring = Wiring((), found.nodes_of, topics)
+    wiring = Wiring((), found.nodes_of, topics, services)
     return Recording("m", found.events, marks, 0, ns(40), wiring=wiring)
 
 
@@ -130,6 +133,24 @@ def test_who_calls_a_service_may_be_heard():
     static = StaticInfo.of([link_unit([comparison(3, "~radio", topic="/archive")])])
     found = reach_prior(mission(""), static, Tpcs.of(static))
     assert found.tolist() == [0.0]
+
+
+# The brain calls the radio, which answers.
+def test_answers_are_heard_by_those_who_call():
+    services = {**SERVICES, "/capture": frozenset({RADIO})}
+    assert set(prior("", services=services).values()) == {0.0}
+    assert prior("@/cmd_vel", services=services)["~radio"] == 0.0
+
+
+def test_who_answers_anybody_can_lead_anywhere():
+    services = {**SERVICES, "/archive": frozenset({RADIO})}
+    assert set(prior("", services=services).values()) == {0.0}
+    assert prior("@/cmd_vel", services=services)["~radio"] == 0.0
+
+
+def test_without_the_services_less_is_certain():
+    assert prior("", services={})["~radio"] == UNHEARD / 2
+    assert prior("@/cmd_vel", services={})["~radio"] == UNREACHED / 2
 
 
 @pytest.mark.parametrize("note", ["@/no_such_topic", "cmd_vel", "me@cmd_vel"])

@@ -32,6 +32,27 @@ UNHEARD = -4.0
 """The same of one whose nodes nobody hears, if no mark says where. A driver acts by its hardware,
 which no graph has, so it is not impossible."""
 
+UNKNOWN_SERVICES = 0.5
+"""What of ``UNREACHED`` and ``UNHEARD`` is left if nobody recorded who offers which service."""
+
+_OFFERED_BY_ALL = (
+    "get_loggers",
+    "set_logger_level",
+    "set_parameters",
+    "tf2_frames",
+    "describe_parameters",
+    "get_parameter_types",
+    "get_parameters",
+    "list_parameters",
+    "set_parameters_atomically",
+    "get_type_description",
+    "change_state",
+    "get_state",
+    "get_available_states",
+    "get_available_transitions",
+    "get_transition_graph",
+)
+"""The last parts of the services that ROS's own libraries offer."""
 _ACTION = ("goal", "cancel", "feedback", "result", "status")
 _OF_ROS = frozenset({"/rosout", "/rosout_agg", "/clock", "/parameter_events", "/diagnostics"})
 
@@ -82,9 +103,27 @@ class Reach:
         return {name: frozenset(nodes) for name, nodes in found.items() if name not in _OF_ROS}
 
     @cached_property
+    def callers(self) -> Mapping[str, frozenset[str]]:
+        """The nodes that are known to call each service that another node offers."""
+        return {
+            name: frozenset(node for node, called in self.calls if called == name)
+            for name in self.wiring.services
+            if name.rpartition("/")[2] not in _OFFERED_BY_ALL
+        }
+
+    @cached_property
+    def answers_anybody(self) -> frozenset[str]:
+        """The nodes that offer a service of which nobody is known who calls it."""
+        unknown = (name for name, nodes in self.callers.items() if not nodes)
+        return frozenset[str]().union(*(self.wiring.services[name] for name in unknown))
+
+    @cached_property
     def hearers(self) -> Mapping[str, frozenset[str]]:
-        """The other nodes of the robot that hear each node."""
+        """The other nodes of the robot that hear each node: its messages, calls and answers."""
         found = defaultdict[str, set[str]](set)
+        for name, nodes in self.callers.items():
+            for node in self.wiring.services[name]:
+                found[node] |= nodes - {node}
         for name, nodes in self.senders.items():
             topic = self.wiring.topics.get(name)
             offered = self.wiring.services.get(name, frozenset())
@@ -94,9 +133,10 @@ class Reach:
         return {node: frozenset(others) for node, others in found.items()}
 
     def is_heard(self, node: str) -> bool:
-        """Whether another node of the robot hears it, or may: who offers a service is not always
-        recorded. True for a node that is not in the graph."""
+        """Whether another node of the robot hears it, or may; so if it is not in the graph."""
         if node not in self.wiring.connected or self.hearers.get(node):
+            return True
+        if node in self.answers_anybody:
             return True
         return not {name for one, name in self.calls if one == node} <= self.wiring.services.keys()
 
@@ -118,8 +158,11 @@ class Reach:
         return frozenset(name for name, above, last in parts if above in actions)
 
     def reaching(self, ends: Iterable[End]) -> frozenset[str]:
-        """The nodes whose messages can lead to one of these, themselves among them."""
-        found = {node for one in ends for node in one.nodes}
+        """The nodes that can lead to one of these, themselves among them.
+
+        Who answers anybody can lead anywhere.
+        """
+        found = {node for one in ends for node in one.nodes} | self.answers_anybody
         left = list(found)
         while left:
             node = left.pop()
@@ -154,6 +197,7 @@ def reach_prior(recording: Recording, static_info: StaticInfo, tpcs: Tpcs) -> Fl
     are_nodes = bool(ends) and not any(one.topics for one in ends)
     named = frozenset[str]().union(*(one.nodes for one in ends)) if are_nodes else reaching
     nodes_of = recording.nodes_of
+    known = 1.0 if reach.wiring.services else UNKNOWN_SERVICES
     for column, name in enumerate(tpcs.names):
         ran = [node for key in tpcs.keys_of[name] for node in nodes_of.get(key, ())]
         # A Python node that reports under its program's name has the process behind it.
@@ -162,10 +206,10 @@ def reach_prior(recording: Recording, static_info: StaticInfo, tpcs: Tpcs) -> Fl
             continue
         if ends:
             prior[column] = (
-                UNREACHED if not nodes & reaching else 0.0 if nodes & named else ELSEWHERE
+                UNREACHED * known if not nodes & reaching else 0.0 if nodes & named else ELSEWHERE
             )
         elif not any(map(reach.is_heard, nodes)):
-            prior[column] = UNHEARD
+            prior[column] = UNHEARD * known
     return prior
 
 
