@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TypeVar
 
 import click
 from rich.table import Table
@@ -31,10 +32,11 @@ from pytpc.ros.ros2.address import is_ros2, words_of
 from pytpc.values.apply import change_as_json, diff_of, shown
 from pytpc.values.origins import as_json, to_json
 
+Planned = TypeVar("Planned")
 _LONGEST = 60
 _MOST_NAMED = 8
 _ARGUMENT = re.compile(r"[A-Za-z_]\w*:=.*", re.DOTALL)
-_WORKSPACE = click.option(
+WORKSPACE = click.option(
     "--workspace",
     type=PATH,
     help="Look up $(find ...) in this built workspace. [default: what is sourced]",
@@ -60,7 +62,7 @@ class _ApplyArguments:
 @click.argument(
     "words", nargs=-1, metavar="[PARAMETER] [NAME:=VALUE]...", shell_complete=offer_parameters
 )
-@_WORKSPACE
+@WORKSPACE
 @JSON
 def origin_command(
     target: Path, words: tuple[str, ...], workspace: Path | None, as_json: bool
@@ -117,7 +119,7 @@ def origin_command(
     metavar="FILE",
     help="Change this file, which a recording names though it is outside of the workspace.",
 )
-@_WORKSPACE
+@WORKSPACE
 @ROS
 @JSON
 @as_object(_ApplyArguments)
@@ -171,6 +173,25 @@ def is_terminal() -> bool:
     return sys.stdin.isatty()
 
 
+def with_consent(place: Place, planned: Callable[[Place], Planned], *, asks: bool) -> Planned:
+    """What is planned; a file that only the recording names is asked for on a terminal.
+
+    Raises:
+        OutsideError: nobody can be asked.
+        Abort: it is not to be changed.
+        TpcError: whatever the plan raises.
+    """
+    try:
+        return planned(place)
+    except OutsideError as error:
+        if not asks or not is_terminal():
+            raise
+        where = f"{error.file}:{error.line}" if error.line else str(error.file)
+        say(plain(f"{where} is in no workspace; only the recording names it."))
+        click.confirm("Change this file?", abort=True, err=True)
+        return planned(replace(place, confirmed=error.file))
+
+
 def as_json_of(origin: Origin) -> dict[str, object]:
     """An origin as JSON."""
     return {"name": origin.name, "words": origin.words(), **as_json(origin)}
@@ -203,15 +224,7 @@ def _plan(given: _ApplyArguments) -> FileChange:
         with progress(f"reading {place.path.name}"):
             return values.plan(place, parameter, value, add=given.add, force=given.force)
 
-    try:
-        return planned(place)
-    except OutsideError as error:
-        if given.as_json or not is_terminal():
-            raise
-        where = f"{error.file}:{error.line}" if error.line else str(error.file)
-        say(plain(f"{where} is in no workspace; only the recording names it."))
-        click.confirm("Change this file?", abort=True, err=True)
-        return planned(replace(place, confirmed=error.file))
+    return with_consent(place, planned, asks=not given.as_json)
 
 
 def _write(change: FileChange, journal: Journal, given: _ApplyArguments) -> dict[str, object]:
@@ -225,7 +238,7 @@ def _write(change: FileChange, journal: Journal, given: _ApplyArguments) -> dict
             "written": entry is not None,
             "undo": number,
         }
-    _show_diff(change)
+    show_diff(change)
     place = f"{change.path}:{change.lineno}"
     names = listed(change.parameters, _MOST_NAMED)
     what = f"{names} {shown(change.old)} -> {shown(change.new)}"
@@ -307,7 +320,7 @@ def _undo(journal: Journal, given: _ApplyArguments) -> None:
         print_json(answer)
         return
     if change is not None:
-        _show_diff(change)
+        show_diff(change)
     done = " (not written: --dry-run)" if given.dry_run else ""
     click.echo(plain(f"{entry.place}: {entry.parameter} {entry.new} -> {entry.old}{done}"))
 
@@ -340,7 +353,8 @@ def _entry_json(entry: JournalEntry) -> dict[str, object]:
     }
 
 
-def _show_diff(change: FileChange) -> None:
+def show_diff(change: FileChange) -> None:
+    """Print a change as a diff."""
     for line in diff_of(change).splitlines():
         click.echo("\t".join(plain(part) for part in line.split("\t")))
 

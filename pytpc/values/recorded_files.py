@@ -38,6 +38,10 @@ class OutsideError(InputError):
         self.file = file
 
 
+class DiffersError(InputError):
+    """A file is not as it was recorded."""
+
+
 @dataclass(frozen=True)
 class RecordedFiles:
     """What is known about the files of a recording.
@@ -69,7 +73,8 @@ class RecordedFiles:
 
         Raises:
             OutsideError: it is in no workspace.
-            InputError: it is not as it was recorded.
+            DiffersError: it is not as it was recorded.
+            InputError: it is not the one that was confirmed.
         """
         if self.confirmed is not None:
             if real_path(self.confirmed) != real:
@@ -80,7 +85,7 @@ class RecordedFiles:
             what = "differs from the file that was recorded"
             if str(named) not in self.digests:
                 what = "the recording has no digest of this file"
-            raise InputError(
+            raise DiffersError(
                 f"{what}, so another value may be in this place; edit it by hand, give the launch"
                 " file instead of the recording, or --force",
                 real,
