@@ -66,7 +66,8 @@ class Remedy:
     value from ``before`` a change. ``smallest`` is the smallest change that does at the most marks.
     ``kind`` is the type of error that it answers, by the comparison ``key``. ``known`` are all
     values that are known to be good. If nothing can be suggested, ``value``, ``direction`` and
-    ``basis`` are None and ``reason`` says why.
+    ``basis`` are None and ``reason`` says why. ``doubt`` is why a person would hesitate to try the
+    value; empty of a usual one.
     """
 
     parameter: str
@@ -80,6 +81,7 @@ class Remedy:
     key: str | None
     smallest: Suggestion | None
     known: tuple[KnownValue, ...] = ()
+    doubt: str = ""
 
 
 @dataclass(frozen=True, slots=True)

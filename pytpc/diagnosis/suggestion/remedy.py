@@ -180,7 +180,9 @@ def restored(found: Remedy, value: float, basis: Basis, words: str) -> Remedy:
     elif found.basis != "reference" and found.direction not in {None, direction}:
         words += "; the log alone points the other way"
     text = f"{direction} {found.parameter} from {show(current)} to {exact(number)} ({words})"
-    return replace(found, direction=direction, value=number, basis=basis, text=text, reason=None)
+    return replace(
+        found, direction=direction, value=number, basis=basis, text=text, reason=None, doubt=""
+    )
 
 
 def _kinds(
@@ -287,7 +289,7 @@ def _chosen(
     text = f"{direction} {name} from {show(shown_current(case))} to {exact(number)} ({why})"
     return Remedy(
         name, shown_current(case), direction, number, basis, text, None, first.found.kind,
-        first.track.comparison.key, None,
+        first.track.comparison.key, None, doubt=doubt.words.rstrip(","),
     )  # fmt: skip
 
 

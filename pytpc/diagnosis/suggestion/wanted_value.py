@@ -75,8 +75,8 @@ def _by_evaluations(wanted: Wanted, within: Interval) -> tuple[float | None, Bas
     if doubt.grade == NOBODY or doubt.what == "zero" or (doubt.words and basis == "growth"):
         value, doubt = _nearer(wanted, value, doubt)
     if not within.holds(value):
-        between = _between(within)
-        value = float(round(between)) if possible.whole else between
+        middle = between(within)
+        value = float(round(middle)) if possible.whole else middle
         return (value if within.holds(value) else None), "between", NO_DOUBT
     return (None if doubt.grade == NOBODY else value), basis, doubt
 
@@ -98,7 +98,7 @@ def _nearer(wanted: Wanted, value: float, doubt: Doubt) -> tuple[float, Doubt]:
     return smallest.value, smallest.doubt
 
 
-def _between(within: Interval) -> float:
+def between(within: Interval) -> float:
     """The geometric mean of two values of one sign, else the arithmetic one; three digits."""
     low, high = within.low, within.high
     mean = (low + high) / 2
