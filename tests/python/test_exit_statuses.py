@@ -32,6 +32,7 @@ INPUT = "INPUT"
 RECORDINGS: Mapping[str, Sequence[str]] = {
     "convert": (INPUT, "-o", "out"),
     "diff": (str(EXAMPLE), INPUT, "--static", str(STATIC)),
+    "fix": (INPUT, "--static", str(STATIC)),
     "learn": (INPUT, "-o", "good"),
     "mark": (INPUT,),
     "marks": (INPUT,),
@@ -47,6 +48,7 @@ STATICS: Mapping[str, Sequence[str]] = {
     "diff": (str(EXAMPLE), str(EXAMPLE), "--static", INPUT),
     "explain": (INPUT, "~limit"),
     "export": (INPUT, "--html", "out.html"),
+    "fix": (str(EXAMPLE), "--static", INPUT),
     "list": (INPUT,),
     "rank": (str(EXAMPLE), "--static", INPUT),
     "report": (str(EXAMPLE), "--static", INPUT, "-o", "out.html"),
@@ -189,7 +191,7 @@ def test_1_for_broken_static_information(name: str, content: str, place: str, tm
 
 
 # Every report is of a key that this static information does not have.
-@pytest.mark.parametrize("name", ["rank", "report", "suggest", "stats", "watch"])
+@pytest.mark.parametrize("name", ["fix", "rank", "report", "suggest", "stats", "watch"])
 def test_static_information_of_another_build(name: str, tmp_path: Path):
     path = tmp_path / "other.json"
     static_info(comparison(0, "~limit")).save(path)
