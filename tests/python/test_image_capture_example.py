@@ -132,7 +132,6 @@ def test_treatments_of_a_type_change_five_parameters_of_three_nodes(kind):
     assert len({treatment.parameter for treatment in changed}) >= 5
     nodes = {treatment.node for treatment in changed}
     assert nodes == {"/mission", "/face_detector", "/flight_controller"}
-    assert all(treatment.tipping is not None for treatment in changed)
 
 
 def test_no_parameter_is_changed_in_both_types():
@@ -150,8 +149,10 @@ def test_treatment_changes_one_compared_parameter_past_where_it_tips(treatment):
     assert yaml.safe_load(treatment.overlay.read_text()) == {node: {name: treatment.new}}
     assert own[node][name] == treatment.old
     assert treatment.old != treatment.new
-    between = sorted([treatment.old, treatment.tipping, treatment.new])
-    assert between[1] == treatment.tipping
+    if treatment.tipping is None:
+        assert treatment.round == 3  # nobody searched for it
+    else:
+        assert sorted([treatment.old, treatment.tipping, treatment.new])[1] == treatment.tipping
     assert name in {entry["parameter"] for entry in DOCUMENT["tpcs"]}
 
 

@@ -166,7 +166,10 @@ def test_treatment_changes_one_number_and_says_so(treatment):
     assert own[node][name] == treatment.old
     # The behaviour tips between the right value and the wrong one.
     low, high = sorted((treatment.old, treatment.new))
-    assert low < treatment.tipping < high
+    if treatment.tipping is None:
+        assert treatment.round == 3  # nobody searched for it
+    else:
+        assert low < treatment.tipping < high
 
 
 def test_faults_are_those_of_the_launch_file():

@@ -126,6 +126,7 @@ WATER_SAMPLER = Example(
     ),
     reached_under=frozenset(
         {
+            "type1_flight_height",
             "type1_min_land_height",
             "type1_waypoint_tolerance",
             "type2_hold_time",
@@ -153,7 +154,7 @@ NAVIGATION = Example(
     # With some treatments of type I the robot gets there, and touches something on the way.
     missed_under=frozenset({"type2", "fault"}),
     # It gets there late.
-    reached_under=frozenset({"type2_retry_period", "type2_settle_time"}),
+    reached_under=frozenset({"type2_replan_period", "type2_retry_period", "type2_settle_time"}),
     shown=(
         "clean",
         "type1_goal_tolerance",
