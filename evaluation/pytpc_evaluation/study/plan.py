@@ -2,7 +2,7 @@
 
 The halves are a rule that was fixed before anything was flown: whoever works on the ranking looks
 at ``tuning`` alone, and ``held-back`` is judged once, at the end. What was added to the study after
-its first judgement (round 2) is held back as a whole.
+its first judgement (rounds 2 and 3) is held back as a whole.
 """
 
 from __future__ import annotations

@@ -39,7 +39,7 @@ def result_chart(rows: Sequence[Position], part: Part) -> Figure:
     figure = Figure(figsize=(_WIDTH, height))
     panels = figure.subplots(1, len(LABELS), sharey=True)
     figure.subplots_adjust(
-        left=0.145, right=0.985, top=1 - 0.62 / height, bottom=0.5 / height, wspace=0.13
+        left=0.165, right=0.985, top=1 - 0.62 / height, bottom=0.5 / height, wspace=0.13
     )
     figure.suptitle(
         f"Changed parameter among the first three, the {part.title}", x=0.008, y=1 - 0.08 / height,
