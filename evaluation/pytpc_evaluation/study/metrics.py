@@ -66,11 +66,9 @@ def estimate(
     Returns:
         All nan where there is no value.
     """
-    numbers = np.asarray(values, dtype=np.float64)
-    codes = _codes(units)
-    if not codes.size:
+    means = _means(values, units)
+    if not means.size:
         return Estimate(np.nan, np.nan, np.nan, 0)
-    means = np.bincount(codes, numbers) / np.bincount(codes)
     drawn = np.random.default_rng(seed).integers(means.size, size=(draws, means.size))
     low, high = np.quantile(means[drawn].mean(axis=1), [_TAIL, 1 - _TAIL])
     return Estimate(float(means.mean()), float(low), float(high), means.size)
@@ -105,11 +103,9 @@ def exact_share(values: npt.ArrayLike, units: Sequence[object]) -> Estimate:
     Returns:
         All nan where there is no value.
     """
-    numbers = np.asarray(values, dtype=np.float64)
-    codes = _codes(units)
-    if not codes.size:
+    means = _means(values, units)
+    if not means.size:
         return Estimate(np.nan, np.nan, np.nan, 0)
-    means = np.bincount(codes, numbers) / np.bincount(codes)
     count, of = float(means.sum()), means.size
     low = float(betaincinv(count, of - count + 1, _TAIL)) if count > 0 else 0.0
     high = float(betaincinv(count + 1, of - count, 1 - _TAIL)) if count < of else 1.0
@@ -215,6 +211,13 @@ def _bins(confidence: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
     # linspace has an edge a little above 0.6.
     edges = np.arange(BINS + 1) / BINS
     return np.clip(np.digitize(confidence, edges) - 1, 0, BINS - 1)
+
+
+def _means(values: npt.ArrayLike, units: Sequence[object]) -> npt.NDArray[np.float64]:
+    """float64[units]: the mean of the values of each unit, in the order of their first."""
+    codes = _codes(units)
+    sums = np.bincount(codes, np.asarray(values, dtype=np.float64))
+    return np.asarray(sums / np.bincount(codes))
 
 
 def _codes(units: Sequence[object]) -> npt.NDArray[np.int64]:
