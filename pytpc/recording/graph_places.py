@@ -2,32 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
 from pytpc.base.wording import plain
 from pytpc.recording.graph_file import read_recorded_graph
 from pytpc.recording.marks import MarkMessages, is_place
-from pytpc.static.wiring import Connections, is_tool
+from pytpc.static.graph_names import (
+    OWN_SERVICES,
+    OWN_TOPICS,
+    action_names,
+    action_of,
+    is_hidden,
+    robots,
+)
+from pytpc.static.wiring import Connections
 
 _MOST_PLACES = 1000
 _LONGEST_ABOUT = 80
 _LONGEST_TYPED = 255
 _LONGEST_SHOWN = 60
-# What ROS and TPC have of their own, which is no part of what the robot does.
-_OWN_TOPICS = {
-    *("/rosout", "/rosout_agg", "/clock", "/parameter_events", "/threshold_information"),
-}
 _OWN_TYPES = {"dynamic_reconfigure/Config", "dynamic_reconfigure/ConfigDescription"}
-_OWN_SERVICES = {
-    *("get_loggers", "set_logger_level", "get_logger_levels", "set_logger_levels"),
-    *("describe_parameters", "get_parameter_types", "get_parameters", "list_parameters"),
-    *("set_parameters", "set_parameters_atomically", "get_type_description"),
-    *("get_available_states", "get_available_transitions", "get_transition_graph"),
-}
-_ROS1_ACTION = ("goal", "cancel", "feedback", "result", "status")
-_ROS2_ACTION = "/_action/"
 
 
 class Place(NamedTuple):
@@ -47,30 +42,33 @@ def places_of(graph: Connections) -> tuple[Place, ...]:
     Topics to which somebody listens come first. An action is one place, whatever topics it has.
     ROS's own names are left out, and all that are no ROS names.
     """
-    actions = _actions(graph)
+    actions = {
+        name: f"action {kind}"[:_LONGEST_ABOUT].rstrip()
+        for name, kind in action_names(graph.topics).items()
+    }
     heard: set[Place] = set()
     unheard: set[Place] = set()
     services: set[Place] = set()
     nodes: set[str] = set()
     for name, topic in graph.topics.items():
-        publishers, subscribers = _robots(topic.publishers), _robots(topic.subscribers)
+        publishers, subscribers = robots(topic.publishers), robots(topic.subscribers)
         nodes |= publishers | subscribers
-        action = _action_of(name, actions)
+        action = action_of(name, actions)
         if action is not None:
             heard.add(Place(action, actions[action]))
         elif publishers and not _is_own_topic(name, topic.type):
             place = Place(name, (topic.type or "topic")[:_LONGEST_ABOUT])
             (heard if subscribers else unheard).add(place)
     for name, providers in graph.services.items():
-        robots = _robots(providers)
-        nodes |= robots
-        if robots and name.rpartition("/")[2] not in _OWN_SERVICES:
+        offering = robots(providers)
+        nodes |= offering
+        if offering and name.rpartition("/")[2] not in OWN_SERVICES:
             services.add(Place(name, "service"))
     parts = heard, unheard, services, {Place(name, "node") for name in nodes}
     found: dict[str, Place] = {}
     for part in parts:
         for place in sorted(part):
-            if is_place(place.name) and not _is_hidden(place.name):
+            if is_place(place.name) and not is_hidden(place.name):
                 found.setdefault(place.name, place)
     return tuple(found.values())[:_MOST_PLACES]
 
@@ -84,42 +82,9 @@ def recorded_places(folder: Path) -> tuple[Place, ...]:
     return places_of(read_recorded_graph(folder))
 
 
-def _actions(graph: Connections) -> dict[str, str]:
-    """The names of the actions, with what they are."""
-    found: dict[str, str] = {}
-    for name, topic in graph.topics.items():
-        action, ros2, _ = name.partition(_ROS2_ACTION)
-        if ros2:
-            found[action] = "action"
-            continue
-        action, _, last = name.rpartition("/")
-        if last == "goal" and all(f"{action}/{part}" in graph.topics for part in _ROS1_ACTION):
-            kind = (topic.type or "").removesuffix("ActionGoal")
-            found[action] = f"action {kind}"[:_LONGEST_ABOUT].rstrip()
-    return found
-
-
-def _action_of(topic: str, actions: Mapping[str, str]) -> str | None:
-    action, ros2, _ = topic.partition(_ROS2_ACTION)
-    if ros2:
-        return action
-    action, _, last = topic.rpartition("/")
-    return action if action in actions and last in _ROS1_ACTION else None
-
-
-def _robots(nodes: Iterable[str]) -> set[str]:
-    """The nodes that are part of the robot."""
-    return {name for name in nodes if not (is_tool(name) or _is_hidden(name))}
-
-
 def _is_own_topic(name: str, kind: str | None) -> bool:
     is_mark = MarkMessages.message_type(name) is not None
-    return is_mark or name in _OWN_TOPICS or kind in _OWN_TYPES
-
-
-def _is_hidden(name: str) -> bool:
-    """Whether ROS 2 does not show it: a part of it begins with an underscore."""
-    return "/_" in name
+    return is_mark or name in OWN_TOPICS or kind in _OWN_TYPES
 
 
 class Naming(NamedTuple):

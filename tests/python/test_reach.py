@@ -40,6 +40,9 @@ TOPICS = {
     "/odom": topic([WHEELS], [RADIO, "/tpc_recorder"]),
     "/packets": topic([RADIO], ["/tpc_recorder"]),
     "/dock/goal": topic([BRAIN], [WHEELS]),
+    "/dock/cancel": topic([BRAIN], [WHEELS]),
+    "/dock/feedback": topic([WHEELS], [BRAIN]),
+    "/dock/status": topic([WHEELS], [BRAIN]),
     "/dock/result": topic([WHEELS], [BRAIN]),
     "/rosout": topic(NODES, ["/rosout"]),
 }
@@ -120,6 +123,40 @@ def test_of_a_node_its_own_parameters_are_likelier():
 
 def test_a_node_beside_a_topic_does_not_narrow_it():
     assert prior("@brain", "@/cmd_vel")["~eye"] == 0.0
+
+
+# The radio has a topic that ends like one of an action, and is named as a node all the same.
+def test_a_node_whose_topic_ends_like_an_action_is_a_node():
+    topics = {**TOPICS, "/eye/status": topic([EYE], [BRAIN])}
+    assert prior("@/eye", topics=topics)["~brain"] == UNREACHED
+
+
+def test_an_offered_service_is_a_place():
+    services = {**SERVICES, "/reset": frozenset({WHEELS})}
+    found = prior("@/reset", services=services)
+    assert found["~wheels"] == 0.0
+    assert place_notes(mission("@/reset", services=services), STATIC) == ()
+
+
+# Where nobody of the robot publishes, nobody is out of reach.
+def test_a_topic_of_a_tool_says_nothing():
+    topics = {**TOPICS, "/buttons": topic(["/rqt_robot_steering"], [BRAIN])}
+    assert prior("@/buttons", topics=topics) == prior("")
+    assert len(place_notes(mission("@/buttons", topics=topics), STATIC)) == 1
+
+
+def test_the_goal_of_an_action_of_ros2_leads_to_its_server():
+    services = {**SERVICES, "/go/_action/send_goal": frozenset({RADIO})}
+    topics = {**TOPICS, "/go/_action/status": topic([RADIO], [EYE])}
+    found = prior("@/go", topics=topics, services=services)
+    assert (found["~radio"], found["~eye"], found["~brain"]) == (0.0, 0.0, 0.0)
+    assert prior("@/faces", topics=topics, services=services)["~wheels"] == 0.0
+
+
+# A node of its own hears tf for another one, nobody knows for which.
+def test_who_publishes_tf_to_a_listener_may_lead_anywhere():
+    topics = {**TOPICS, "/tf": topic([RADIO], ["/transform_listener_impl_55a1"])}
+    assert prior("@/cmd_vel", topics=topics)["~radio"] == 0.0
 
 
 # Nobody but the recorder hears the radio. The eye would be heard without the brain's word, too.

@@ -19,8 +19,16 @@ from pytpc.base.columns import Floats
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
+from pytpc.static.graph_names import (
+    OWN_SERVICES,
+    OWN_TOPICS,
+    ROS2_ACTION,
+    action_names,
+    action_of,
+    robots,
+)
 from pytpc.static.static_info import StaticInfo
-from pytpc.static.wiring import Wiring, is_tool
+from pytpc.static.wiring import Wiring
 
 UNREACHED = -6.0
 """The log odds of a parameter whose nodes cannot reach what a mark names."""
@@ -35,26 +43,14 @@ which no graph has, so it is not impossible."""
 UNKNOWN_SERVICES = 0.5
 """What of ``UNREACHED`` and ``UNHEARD`` is left if nobody recorded who offers which service."""
 
-_OFFERED_BY_ALL = (
-    "get_loggers",
-    "set_logger_level",
-    "set_parameters",
-    "tf2_frames",
-    "describe_parameters",
-    "get_parameter_types",
-    "get_parameters",
-    "list_parameters",
-    "set_parameters_atomically",
-    "get_type_description",
-    "change_state",
-    "get_state",
-    "get_available_states",
-    "get_available_transitions",
-    "get_transition_graph",
-)
-"""The last parts of the services that ROS's own libraries offer."""
-_ACTION = ("goal", "cancel", "feedback", "result", "status")
-_OF_ROS = frozenset({"/rosout", "/rosout_agg", "/clock", "/parameter_events", "/diagnostics"})
+_OWN_SERVICES = OWN_SERVICES | {
+    *("change_state", "get_state", "tf2_frames"),
+    *("load_node", "unload_node", "list_nodes", "load_nodelet", "unload_nodelet", "list"),
+}
+"""With those that only tools call."""
+_OWN_TOPICS = OWN_TOPICS | {"/diagnostics"}
+_LISTENER = "/transform_listener_impl_"
+"""So begins the node of ROS 2 that hears tf for another one; nobody knows for which."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +96,7 @@ class Reach:
             found[name] |= topic.publishers
         for node, name in self.calls:
             found[name].add(node)
-        return {name: frozenset(nodes) for name, nodes in found.items() if name not in _OF_ROS}
+        return {name: frozenset(nodes) for name, nodes in found.items() if name not in _OWN_TOPICS}
 
     @cached_property
     def callers(self) -> Mapping[str, frozenset[str]]:
@@ -108,14 +104,22 @@ class Reach:
         return {
             name: frozenset(node for node, called in self.calls if called == name)
             for name in self.wiring.services
-            if name.rpartition("/")[2] not in _OFFERED_BY_ALL
+            if name.rpartition("/")[2] not in _OWN_SERVICES and ROS2_ACTION not in name
         }
 
     @cached_property
     def answers_anybody(self) -> frozenset[str]:
-        """The nodes that offer a service of which nobody is known who calls it."""
-        unknown = (name for name, nodes in self.callers.items() if not nodes)
-        return frozenset[str]().union(*(self.wiring.services[name] for name in unknown))
+        """The nodes of which nobody knows who hears them.
+
+        They offer a service of which nobody is known who calls it, or tf's listener hears them.
+        """
+        unknown = (self.wiring.services[name] for name, nodes in self.callers.items() if not nodes)
+        by_tf = (
+            topic.publishers
+            for topic in self.wiring.topics.values()
+            if any(_LISTENER in one for one in topic.subscribers)
+        )
+        return robots(frozenset[str]().union(*unknown, *by_tf))
 
     @cached_property
     def hearers(self) -> Mapping[str, frozenset[str]]:
@@ -129,7 +133,12 @@ class Reach:
             offered = self.wiring.services.get(name, frozenset())
             others = offered if topic is None else topic.subscribers
             for node in nodes:
-                found[node] |= {one for one in others if one != node and not is_tool(one)}
+                found[node] |= robots(others) - {node}
+        for name, topic in self.wiring.topics.items():
+            # A client sends its goal to the server by a service, and hears of it by these topics.
+            if ROS2_ACTION in name:
+                for node in topic.subscribers:
+                    found[node] |= robots(topic.publishers) - {node}
         return {node: frozenset(others) for node, others in found.items()}
 
     def is_heard(self, node: str) -> bool:
@@ -141,21 +150,27 @@ class Reach:
         return not {name for one, name in self.calls if one == node} <= self.wiring.services.keys()
 
     def end(self, where: str) -> End | None:
-        """What a person means by a place; None if nothing in the graph is called so.
+        """What a person means by a place; None if no node of the robot acts at one called so.
 
-        The last parts of a name are enough if only one thing has them.
+        The last parts of a name are enough if only one thing has them. A full name of a node is
+        that node, unless it is an action, too.
         """
-        topics = _named(where, self.senders) or self._action(where)
-        if topics:
-            return End(topics, frozenset[str]().union(*(self.senders[name] for name in topics)))
-        nodes = _named(where, {one for one in self.wiring.connected if not is_tool(one)})
-        return End(frozenset(), nodes) if nodes else None
-
-    def _action(self, where: str) -> frozenset[str]:
-        """The topics of an action."""
-        parts = [(name, *name.rpartition("/")[::2]) for name in self.senders]
-        actions = _named(where, {above for _, above, last in parts if last in _ACTION})
-        return frozenset(name for name, above, last in parts if above in actions)
+        actions = action_names(self.wiring.topics)
+        acting = _named(where, actions)
+        if acting:
+            topics = frozenset(one for one in self.senders if action_of(one, actions) in acting)
+            nodes = frozenset[str]().union(*(self.senders[one] for one in topics))
+        else:
+            topics = _named(where, {*self.senders, *self.wiring.services})
+            offered = self.wiring.services
+            nothing = frozenset[str]()
+            by = (self.senders.get(one) or offered.get(one, nothing) for one in topics)
+            nodes = nothing.union(*by)
+        known = robots(self.wiring.connected)
+        full = f"/{where.strip('~/')}"
+        if (full in known and not acting) or not robots(nodes):
+            topics, nodes = frozenset(), _named(where, known)
+        return End(topics, robots(nodes)) if robots(nodes) else None
 
     def reaching(self, ends: Iterable[End]) -> frozenset[str]:
         """The nodes that can lead to one of these, themselves among them.
