@@ -331,7 +331,7 @@ def test_a_good_run_tells_which_threshold_is_another():
     tpcs = Tpcs.of(STATIC)
     here = events([(1, 0, 0, 1, 4), (1, 1, 0, 1, 4), (1, 2, 0, 1, 4), (2, 2, 0, 1, 5)])
     there = events([(1, 0, 0, 1, 2), (1, 1, 0, 1, 4), (1, 2, 0, 1, 4)])
-    found = of_references(tpcs, here, [there])
+    found = of_references(STATIC, tpcs, here, [there])
     prior = dict(zip(tpcs.names, found.prior, strict=True))
     assert prior["~gate"] == 0.0
     assert prior["~noisy"] == UNCHANGED
@@ -340,7 +340,7 @@ def test_a_good_run_tells_which_threshold_is_another():
     assert found.others == {key(0): 2.0}
     # It kept its value if one of the runs had it.
     runs = [there, events([(1, 0, 0, 1, 4)]), there]
-    gate = of_references(tpcs, here, runs).prior[tpcs.names.index("~gate")]
+    gate = of_references(STATIC, tpcs, here, runs).prior[tpcs.names.index("~gate")]
     assert gate == UNCHANGED
 
 
@@ -349,9 +349,18 @@ def test_between_two_good_values_is_nearly_as_good():
     tpcs = Tpcs.of(STATIC)
     here = events([(1, 0, 0, 1, 4)])
     runs = [events([(1, 0, 0, 1, value)]) for value in (7, 2)]
-    found = of_references(tpcs, here, runs)
+    found = of_references(STATIC, tpcs, here, runs)
     assert found.prior[tpcs.names.index("~gate")] == BETWEEN
     assert found.others == {key(0): 2.0}
+
+
+# Modes 1 and 3 were good; 2 is another one, and no less likely to be wrong.
+def test_nothing_lies_between_two_values_that_must_be_equal():
+    static = static_info(comparison(0, "~mode", "=="))
+    tpcs = Tpcs.of(static)
+    runs = [events([(1, 0, 0, 1, value)]) for value in (1, 3)]
+    found = of_references(static, tpcs, events([(1, 0, 0, 1, 2)]), runs)
+    assert found.prior.tolist() == [0.0]
 
 
 # Of a good run with 5 and one with 7, the nearer one is replayed: 4 is below both.
@@ -359,7 +368,7 @@ def test_the_nearest_good_value_is_replayed():
     here, tpcs = events([(1, 0, 0, 1, 4)]), Tpcs.of(STATIC)
     for order in ((5, 7), (7, 5)):
         runs = [events([(1, 0, 0, 1, value)]) for value in order]
-        assert of_references(tpcs, here, runs).others == {key(0): 5.0}
+        assert of_references(STATIC, tpcs, here, runs).others == {key(0): 5.0}
 
 
 def with_defaults(*defaults):

@@ -170,7 +170,7 @@ def set_anew(*values, every=10.0):
 
 def test_what_was_set_while_it_ran_is_replayed_with_its_first_value():
     tpcs = Tpcs.of(STATIC)
-    found = of_settings(tpcs, events(set_anew(5, 2)))
+    found = of_settings(STATIC, tpcs, events(set_anew(5, 2)))
     assert found.others == {key(0): 5.0}
     assert found.prior[tpcs.names.index("~height")] == SET_ANEW
     assert np.isnan(np.delete(found.prior, tpcs.names.index("~height"))).all()
@@ -178,13 +178,13 @@ def test_what_was_set_while_it_ran_is_replayed_with_its_first_value():
 
 def test_a_threshold_that_is_worked_out_is_no_setting():
     values = range(MOST_SETTINGS + 1)
-    assert of_settings(Tpcs.of(STATIC), events(set_anew(*values, every=5.0))).others == {}
+    assert of_settings(STATIC, Tpcs.of(STATIC), events(set_anew(*values, every=5.0))).others == {}
 
 
 # Two nodes run the code, each with its own value.
 def test_a_setting_of_another_node_is_no_change():
     rows = [(t, 0, 1, 3, 2 + t % 2, f"/n{t % 2}") for t in range(20)]
-    assert of_settings(Tpcs.of(STATIC), events(rows)).others == {}
+    assert of_settings(STATIC, Tpcs.of(STATIC), events(rows)).others == {}
 
 
 # The good run had both values of speed's threshold, and only the first one of height's.
@@ -195,3 +195,10 @@ def test_who_sets_a_wrong_value_while_it_runs_is_found():
         found = diagnose_beside(mission, STATIC, references=references)
         assert found.names[found.order[0]] == "~height"
         assert found.posterior[found.order[0]] > 0.5
+
+
+# height is compared with the parameter times the load, which the log does not have.
+def test_what_is_worked_out_from_more_than_the_parameter_is_no_setting():
+    worked_out = Transform("expression", text="max_height * load")
+    static = static_info(comparison(0, "~height", transform=worked_out), comparison(1, "~speed"))
+    assert of_settings(static, Tpcs.of(static), events(set_anew(5, 2))).others == {}

@@ -29,7 +29,7 @@ what is a large change differs from one parameter to the next."""
 
 BETWEEN = -3.0
 """The same of one whose value lies between those of two good runs: what the robot did with either
-is known, and a threshold acts in one direction."""
+is known, and a threshold acts in one direction. Not so for equality and flags."""
 
 DEFAULT = -3.0
 """The same of one that has the default of its code. Not as little as ``UNCHANGED``, because a
@@ -42,6 +42,7 @@ right before goes wrong after it. By reason, the study has none."""
 MOST_SETTINGS = 8
 """A threshold that changes more often in a node is worked out, and not set."""
 
+_ORDERED = frozenset({"<", "<=", ">", ">="})
 _CLOSE = 1e-6
 """A default that the code computes, or keeps in a float, is the threshold up to this part."""
 
@@ -74,6 +75,18 @@ def before_changes(
     return found
 
 
+def _is_logged(static_info: StaticInfo, key: str) -> bool:
+    """Whether the log has the threshold of a comparison, and only its parameter decides it."""
+    comparison, unit = static_info.comparisons[key], static_info.unit_of(key)
+    if is_text(comparison, unit):
+        return False
+    try:
+        kept_as(tree_of(comparison), read_type(comparison, unit))
+    except NoUnitError:
+        return False
+    return True
+
+
 def _threshold(static_info: StaticInfo, key: str, value: float) -> float:
     """That of a comparison with this value of its parameter; nan if the way there is not known."""
     comparison, unit = static_info.comparisons[key], static_info.unit_of(key)
@@ -102,8 +115,10 @@ def of_changes(names: Sequence[str], changes: Iterable[Change]) -> Floats:
     return prior
 
 
-def of_references(tpcs: Tpcs, events: Events, references: Sequence[Events]) -> KnownGood:
-    """What the thresholds of good runs say.
+def of_references(
+    static_info: StaticInfo, tpcs: Tpcs, events: Events, references: Sequence[Events]
+) -> KnownGood:
+    """What the thresholds of good runs say; those of texts are not logged.
 
     A parameter kept its value if one of the runs had it. Otherwise the other threshold is the
     nearest one of a good run. Nothing is known of a parameter that changed during a run, or was not
@@ -118,13 +133,17 @@ def of_references(tpcs: Tpcs, events: Events, references: Sequence[Events]) -> K
             float(here[code]),
             [float(one[code]) for one in there if one[code] == one[code]],
         )
+        key = tpcs.keys[code]
         if math.isnan(now) or not known:
             continue
-        least = BETWEEN if min(known) < now < max(known) else 0.0
+        if is_text(static_info.comparisons[key], static_info.unit_of(key)):
+            continue
+        ordered = static_info.comparisons[key].relation in _ORDERED
+        least = BETWEEN if ordered and min(known) < now < max(known) else 0.0
         kept = min(least, *(of_change(then, now) for then in known))
         prior[name] = max(prior.get(name, UNCHANGED), kept)
         if kept != UNCHANGED:
-            others[tpcs.keys[code]] = min(known, key=lambda then: (abs(then - now), then))
+            others[key] = min(known, key=lambda then: (abs(then - now), then))
     return KnownGood(_by_name(tpcs, prior), others)
 
 
@@ -137,7 +156,10 @@ def of_defaults(static_info: StaticInfo, tpcs: Tpcs, events: Events) -> KnownGoo
         now, default = float(here[code]), static_info.comparisons[key].default
         if math.isnan(now) or default is None or isinstance(default, str):
             continue
-        then = _threshold(static_info, key, float(default))
+        try:
+            then = _threshold(static_info, key, float(default))
+        except OverflowError:
+            continue
         if math.isnan(then):
             continue
         same = math.isclose(then, now, rel_tol=_CLOSE)
@@ -147,12 +169,14 @@ def of_defaults(static_info: StaticInfo, tpcs: Tpcs, events: Events) -> KnownGoo
     return KnownGood(_by_name(tpcs, prior), others)
 
 
-def of_settings(tpcs: Tpcs, events: Events) -> KnownGood:
+def of_settings(static_info: StaticInfo, tpcs: Tpcs, events: Events) -> KnownGood:
     """What was set anew while the mission ran; the other threshold is the first one."""
     own = events.with_keys(tpcs.keys)
     prior: dict[str, float] = {}
     others: dict[str, float] = {}
     for code in np.flatnonzero(np.isnan(thresholds_of(events, tpcs))).tolist():
+        if not _is_logged(static_info, tpcs.keys[code]):
+            continue
         rows = own.by_key.rows(code)
         for node in np.unique(own.node[rows]).tolist():
             values = own.thresh[rows[own.node[rows] == node]]

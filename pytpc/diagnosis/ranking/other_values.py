@@ -137,7 +137,7 @@ def _by_values(
     tpcs = Tpcs.of(static_info)
     here = with_summarised(recording)
     default = of_defaults(static_info, tpcs, here)
-    anew = of_settings(tpcs, here)
+    anew = of_settings(static_info, tpcs, here)
     found: list[KnownGood] = []
     if changes:
         # The last value for a parameter counts.
@@ -145,7 +145,7 @@ def _by_values(
         old = before_changes(static_info, oldest_last)
         found.append(KnownGood(of_changes(tpcs.names, changes), old))
     if references:
-        found.append(of_references(tpcs, here, [with_summarised(run) for run in references]))
+        found.append(of_references(static_info, tpcs, here, list(map(with_summarised, references))))
     if found:
         prior = np.fmin.reduce([one.prior for one in found])
         prior[np.isnan(prior)] = UNCHANGED / 2
