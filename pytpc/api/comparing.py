@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -19,6 +20,7 @@ from pytpc.diagnosis.results.differences import RunDifferences
 from pytpc.recording.events import Events
 from pytpc.recording.mission import Recording
 from pytpc.recording.parameter_values import ParameterValues
+from pytpc.recording.profile import is_profile, runs_in
 from pytpc.ros.graphs import values_at
 from pytpc.ros.mission_run import BAG_FILE, MCAP_FILE
 from pytpc.static.builds import Build, build_of
@@ -90,13 +92,9 @@ class RecordedRun:
 
         What this build does not have keeps its key, and counts nowhere.
         """
-        if self.static_file is None or set(self._keys) <= static_info.comparisons.keys():
+        names = {} if self.static_file is None else _names_in(static_info, self.static_file)
+        if names.keys().isdisjoint(self._keys):
             return self
-        try:
-            own = StaticInfo.load(self.static_file)
-        except TpcError:
-            return self
-        names = keys_in(static_info, own)
         recording = self.recording
         events, summaries = recording.events, recording.summaries
         said = [replace(one, key=renamed((one.key,), names)[0]) for one in recording.names]
@@ -131,6 +129,18 @@ class RecordedRun:
             return None
 
 
+def _names_in(static_info: StaticInfo, other: Path) -> Mapping[str, str]:
+    """The keys in this build by those of another one; worked out once for runs of one build."""
+    known: dict[str, Mapping[str, str]] = static_info.__dict__.setdefault("_other_builds", {})
+    try:
+        digest = hashlib.sha256(other.read_bytes()).hexdigest()
+        if digest not in known:
+            known[digest] = keys_in(static_info, StaticInfo.load(other))
+    except (OSError, TpcError):
+        return {}
+    return known[digest]
+
+
 Run = RecordedRun | Recording | Source
 
 
@@ -150,7 +160,8 @@ def diff(good: Run | Sequence[Run], bad: Run, static_info: StaticInfo | Source) 
     given = load_static(static_info)
     mission = RecordedRun.of(bad)
     named = with_names_of(mission.recording, given, mission.source)
-    return _differences(_runs(good), mission, given, named)
+    runs = [run.in_build(given) for run in _runs(good)]
+    return _differences(runs, mission, given, named)
 
 
 def diff_running(
@@ -204,7 +215,7 @@ def beside(
     Raises:
         InputError: the values of a run cannot be read.
     """
-    runs = _runs(good)
+    runs = [run.in_build(static_info) for run in _runs(good)]
     if not runs:
         return about_mission(question, static_info, named)
     found = _differences(runs, mission, static_info, named, question.window_s)
@@ -221,9 +232,33 @@ def beside(
 
 
 def _runs(good: Run | Sequence[Run]) -> list[RecordedRun]:
-    if isinstance(good, RecordedRun | Recording | str | os.PathLike):
-        return [RecordedRun.of(good)]
-    return [RecordedRun.of(one) for one in good]
+    every = [good] if isinstance(good, RecordedRun | Recording | str | os.PathLike) else good
+    return [RecordedRun.of(run) for one in every for run in _unfolded(one)]
+
+
+def _unfolded(run: Run) -> Sequence[Run]:
+    """The run itself, or the runs of a profile."""
+    if isinstance(run, RecordedRun | Recording):
+        return [run]
+    return with_learned([Path(run)])
+
+
+def with_learned(sources: Sequence[Path]) -> list[Path]:
+    """The recordings, with the runs of a profile in its place.
+
+    Raises:
+        InputError: a profile is broken, or has no run.
+    """
+    found: list[Path] = []
+    for source in sources:
+        if not is_profile(source):
+            found.append(source)
+            continue
+        runs = runs_in(source)
+        if not runs:
+            raise InputError("no good run in this profile; add one with `pytpc learn`", source)
+        found += [source / run.folder for run in runs]
+    return found
 
 
 def _differences(

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import re
 import shutil
 import tempfile
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
+from pytpc.api.comparing import RecordedRun
 from pytpc.api.missions import check_has_reports
 from pytpc.api.static_of_mission import recorded_static
 from pytpc.base.errors import InputError, TpcError
@@ -47,22 +51,37 @@ def learn(recording: Recording, source: Path, profile: Path) -> LearnedRun:
     """
     check_has_reports(recording, source)
     begin_profile(profile)
+    if (source / LEARNED_FILE).is_file():
+        raise InputError("is a part of a profile already; give the recording itself", source)
     where = str(source.absolute())
     reports = len(recording.events) + len(recording.summaries)
-    said = f"{recording.start_ns} {recording.end_ns} {reports}"
+    digest = reports_digest(recording)
     name = re.sub(r"[^A-Za-z0-9_.-]+", "-", source.absolute().name).strip(".-")[:_NAME] or "run"
-    folder = f"{name}-{hashlib.sha256(said.encode()).hexdigest()[:8]}"
-    run = LearnedRun(folder, where, recording.start_ns, recording.end_ns, reports)
+    run = LearnedRun(
+        f"{name}-{digest[:8]}", where, recording.start_ns, recording.end_ns, reports, digest
+    )
+    # Who reads the profile reads these values; what is broken is said now.
+    _ = RecordedRun(recording, source).values
     try:
         scratch = Path(tempfile.mkdtemp(prefix=".learning-", dir=profile))
         try:
             _write(recording, source, run, scratch)
-            _put(scratch, profile / folder)
+            _put(scratch, profile / run.folder)
         finally:
             shutil.rmtree(scratch, ignore_errors=True)
     except OSError as error:
         raise TpcError(f"cannot be written: {error.strerror or error}", profile) from error
     return run
+
+
+def reports_digest(recording: Recording) -> str:
+    """The SHA-256 of all reports of a recording, as hexadecimal digits."""
+    found = hashlib.sha256()
+    for table in (recording.events, recording.summaries):
+        found.update(json.dumps([table.keys, table.nodes]).encode())
+        for name, column in sorted(table.columns().items()):
+            found.update(name.encode() + np.ascontiguousarray(column).tobytes())
+    return found.hexdigest()
 
 
 def forget(profile: Path, name: str) -> LearnedRun:
@@ -76,12 +95,19 @@ def forget(profile: Path, name: str) -> LearnedRun:
         InputError: no such run, or several.
     """
     runs = runs_in(profile)
-    meant = [run for run in runs if name in (run.folder, run.name, run.source)]
+    meant = [run for run in runs if name == run.folder]
+    meant = meant or [run for run in runs if name in (run.name, run.source)]
     if len(meant) != 1:
         there = ", ".join(run.folder for run in meant or runs) or "none"
         what = "several runs" if meant else "no run"
         raise InputError(f"{what} called {name}; there are: {there}", profile)
-    shutil.rmtree(profile / meant[0].folder, ignore_errors=True)
+    folder = profile / meant[0].folder
+    try:
+        # Without this file it is no run of the profile, whatever is left of it.
+        (folder / LEARNED_FILE).unlink()
+        shutil.rmtree(folder)
+    except OSError as error:
+        raise TpcError(f"cannot be removed: {error.strerror or error}", folder) from error
     return meant[0]
 
 
@@ -101,10 +127,10 @@ def _write(recording: Recording, source: Path, run: LearnedRun, folder: Path) ->
 
 
 def _put(made: Path, folder: Path) -> None:
-    """Put a finished folder in its place; one that was there is removed first."""
+    """Put a finished folder in its place; one that was there goes out of the way first."""
     made.chmod(0o755)
+    gone = made.with_name(f"{made.name}-gone")
     if folder.exists():
-        # Without this file it is no run of the profile.
-        (folder / LEARNED_FILE).unlink(missing_ok=True)
-        shutil.rmtree(folder)
+        folder.rename(gone)
     made.rename(folder)
+    shutil.rmtree(gone, ignore_errors=True)

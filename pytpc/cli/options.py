@@ -11,8 +11,9 @@ from pathlib import Path
 
 import click
 
-from pytpc.api.comparing import RecordedRun
+from pytpc.api.comparing import RecordedRun, with_learned
 from pytpc.api.diagnosing import AskedMission
+from pytpc.api.learning import reports_digest
 from pytpc.api.missions import check_reports, read_named, same_reports
 from pytpc.base.errors import InputError
 from pytpc.base.wording import many, plain
@@ -22,7 +23,7 @@ from pytpc.cli.lines import say
 from pytpc.diagnosis.question import WINDOW_S, Question, Types
 from pytpc.recording.faults import faults_of
 from pytpc.recording.mission import Recording
-from pytpc.recording.profile import LEARNED_FILE, is_profile, read_learned, runs_in
+from pytpc.recording.profile import LEARNED_FILE, read_learned
 from pytpc.ros.earlier_runs import last_unmarked_run
 from pytpc.static.static_info import StaticInfo
 
@@ -185,26 +186,12 @@ def good_runs(sources: Sequence[Path], static: StaticInfo) -> list[RecordedRun]:
     """
     read: dict[Path, RecordedRun] = click.get_current_context().meta.setdefault(_GOOD, {})
     found = []
-    for source in _with_learned(sources):
+    for source in with_learned(sources):
         if source not in read:
             read[source] = RecordedRun(recording_of(source), source)
             warn_of_marks(source, read[source].recording)
         found.append(read[source].in_build(static))
         check_reports(found[-1].recording, static, source)
-    return found
-
-
-def _with_learned(sources: Sequence[Path]) -> list[Path]:
-    """The recordings, with the runs of a profile in its place."""
-    found: list[Path] = []
-    for source in sources:
-        if not is_profile(source):
-            found.append(source)
-            continue
-        runs = runs_in(source)
-        if not runs:
-            raise InputError("no good run in this profile; add one with `pytpc learn`", source)
-        found += [source / run.folder for run in runs]
     return found
 
 
@@ -234,7 +221,7 @@ def asked_mission(
 def refuse_itself(good: Sequence[RecordedRun], mission: Recording) -> None:
     """Refuse the mission itself as its good run, whatever the path, the format or the copy.
 
-    Learned, it has the times of the mission.
+    Learned, it has the digest of the mission's reports.
 
     Raises:
         InputError: both have the same reports.
@@ -251,13 +238,7 @@ def refuse_itself(good: Sequence[RecordedRun], mission: Recording) -> None:
 def _is_learned_from(run: RecordedRun, mission: Recording) -> bool:
     if run.source is None or not (run.source / LEARNED_FILE).is_file():
         return False
-    learned = read_learned(run.source / LEARNED_FILE)
-    reports = len(mission.events) + len(mission.summaries)
-    return (learned.start_ns, learned.end_ns, learned.reports) == (
-        mission.start_ns,
-        mission.end_ns,
-        reports,
-    )
+    return read_learned(run.source / LEARNED_FILE).digest == reports_digest(mission)
 
 
 def warn_plainly(line: str) -> None:

@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from pytpc.base.errors import InputError
 PROFILE_FILE = "profile.json"
 LEARNED_FILE = "learned.json"
 _SCHEMA = 1
+_LATEST = 2**63
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +26,7 @@ class LearnedRun:
     """A good run in a profile: from which recording it was learned, and that one's size.
 
     ``folder`` is its name in the profile; ``reports`` counts evaluations that were reported one by
-    one, and summaries; times are on the clock of the reports.
+    one, and summaries; times are on the clock of the reports. ``digest`` is that of all reports.
     """
 
     folder: str
@@ -32,6 +34,7 @@ class LearnedRun:
     start_ns: int
     end_ns: int
     reports: int
+    digest: str
 
     @property
     def name(self) -> str:
@@ -67,7 +70,8 @@ def runs_in(profile: Path) -> list[LearnedRun]:
         InputError: it is of a newer format, or a file in it is broken.
     """
     _check(profile / PROFILE_FILE)
-    files = sorted(profile.glob(f"*/{LEARNED_FILE}"))
+    # What begins with a dot is not finished.
+    files = [file for file in profile.glob(f"*/{LEARNED_FILE}") if file.parent.name[0] != "."]
     return sorted(map(read_learned, files), key=lambda run: (run.start_ns, run.folder))
 
 
@@ -90,12 +94,18 @@ def read_learned(path: Path) -> LearnedRun:
     """
     document = _check(path)
     try:
-        whole = [document[name] for name in ("start_ns", "end_ns", "reports")]
-        numbers = [number for number in whole if isinstance(number, int)]
-        start_ns, end_ns, reports = numbers
-        return LearnedRun(path.parent.name, str(document["source"]), start_ns, end_ns, reports)
+        start_ns, end_ns, reports = (_whole(document, n) for n in ("start_ns", "end_ns", "reports"))
+        source, digest = str(document["source"]), str(document["digest"])
+        return LearnedRun(path.parent.name, source, start_ns, end_ns, reports, digest)
     except (KeyError, ValueError) as error:
         raise InputError(f"not a run of a profile: {error}", path) from error
+
+
+def _whole(document: Mapping[str, object], name: str) -> int:
+    number = document[name]
+    if not isinstance(number, int) or isinstance(number, bool) or not 0 <= number < _LATEST:
+        raise ValueError(f"{name} is no whole number below 2^63")
+    return number
 
 
 def _check(path: Path) -> dict[str, object]:

@@ -6,7 +6,7 @@ A key has the line and the column in it, so a line that is added above a compari
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import NamedTuple
 
 from pytpc.static.link_unit import Comparison, LinkUnit
@@ -24,24 +24,31 @@ def keys_in(here: StaticInfo, there: StaticInfo) -> dict[str, str]:
 
     Two are the same if they compare the same parameter in the same way in the same function. If a
     function has several of these, they are told apart by their order, or, if their number differs,
-    by their source line. What is still not clear is left out.
+    by their source line. What is still not clear is left out. A key has the line in it, so the same
+    key may be another comparison there; it is the same one if its source line is, too.
 
     Args:
         here: this build.
         there: the other one.
     """
-    new = _without(here, there.comparisons.keys())
-    old = _without(there, here.comparisons.keys())
+    same = {
+        key
+        for key, found in there.comparisons.items()
+        if key in here.comparisons and here.comparisons[key].source_code == found.source_code
+    }
+    new, old = _without(here, same), _without(there, same)
     found: dict[str, str] = {}
+    taken: set[str] = set()
     for place in (_in_function, _in_file):
-        free = _grouped([one for one in new if one.found.key not in found.values()], place)
+        free = _grouped([one for one in new if one.found.key not in taken], place)
         for alike, left in _grouped([o for o in old if o.found.key not in found], place).items():
-            found |= _paired(left, free.get(alike, []))
-    return found
+            paired = _paired(left, free.get(alike, []))
+            found |= paired
+            taken |= set(paired.values())
+    return {key: other for key, other in found.items() if key != other}
 
 
-def _without(static: StaticInfo, known: Iterable[str]) -> list[_Placed]:
-    skipped = set(known)
+def _without(static: StaticInfo, skipped: Collection[str]) -> list[_Placed]:
     return [
         _Placed(unit, one)
         for unit in static.units

@@ -10,6 +10,7 @@ import pytest
 from click.testing import CliRunner
 from mission_samples import comparison, events, key, ns, static_info
 
+import pytpc
 from pytpc.api.comparing import RecordedRun
 from pytpc.cli.main import main
 from pytpc.diagnosis.thinned import CHANGES, EVENLY, thinned
@@ -182,6 +183,49 @@ def test_an_empty_profile_says_how_to_fill_it(robot):
     assert "no good run in this profile; add one with `pytpc learn`" in line
 
 
+def test_two_runs_at_the_same_times_are_two(robot):
+    saved(robot / "again" / "monday", flight("monday", 4.2))
+    assert learned(robot, "monday", "again/monday").exit_code == 0
+    assert len(runs_in(robot / "good")) == 2
+
+
+def test_a_run_with_broken_values_is_refused_when_it_is_learned(robot):
+    saved(robot / "monday", flight(), "max_speed: [4.0\n")
+    assert "params.yaml" in failed(robot, "learn", robot / "monday", "-o", robot / "good")
+
+
+def test_what_is_not_finished_is_no_run(robot):
+    learned(robot, "monday")
+    (run,) = runs_in(robot / "good")
+    (robot / "good" / run.folder).rename(robot / "good" / ".learning-1")
+    assert runs_in(robot / "good") == []
+
+
+def test_a_broken_run_is_named(robot):
+    learned(robot, "monday")
+    (run,) = runs_in(robot / "good")
+    file = robot / "good" / run.folder / "learned.json"
+    file.write_text(file.read_text().replace('"reports": 2000', '"reports": -1'))
+    line = failed(robot, "learn", "-o", robot / "good")
+    assert "reports is no whole number below 2^63" in line
+    assert str(file) in line
+
+
+def test_a_part_of_a_profile_is_not_learned_again(robot):
+    learned(robot, "monday")
+    (run,) = runs_in(robot / "good")
+    line = failed(robot, "learn", robot / "good" / run.folder, "-o", robot / "more")
+    assert "is a part of a profile already; give the recording itself" in line
+
+
+def test_a_profile_is_taken_by_the_api(robot):
+    learned(robot, "monday", "tuesday")
+    found = pytpc.diagnose(robot / "today", robot / "static.json", reference=robot / "good")
+    assert found.rows()[0]["parameter"] == "~max_speed"
+    assert found.differences is not None
+    assert len(found.differences.good) == 2
+
+
 def test_without_reports_nothing_is_learned(robot):
     saved(robot / "silent", Recording("silent", events([]), (), 0, ns(1)))
     assert "no threshold reports" in failed(robot, "learn", robot / "silent", "-o", robot / "good")
@@ -207,6 +251,19 @@ def test_a_good_run_of_another_build_is_matched_by_place(robot):
     assert result.exit_code == 0, result.stderr
     first = json.loads(result.stdout)[0]["diagnosis"]["suspects"][0]
     assert (first["parameter"], first["probability"] > 0.5) == ("~max_speed", True)
+
+
+# Two lines were added above: what was at 14 is at 16, and has the key that another one had there.
+def test_a_key_that_is_another_comparison_there_is_not_trusted():
+    here = static_info(
+        comparison(14, "~a", lineno=14, source_code="if (x > a_)"),
+        comparison(16, "~a", lineno=16, source_code="if (y > a_)"),
+    )
+    there = static_info(
+        comparison(12, "~a", lineno=12, source_code="if (x > a_)"),
+        comparison(14, "~a", lineno=14, source_code="if (y > a_)"),
+    )
+    assert keys_in(here, there) == {key(12): key(14), key(14): key(16)}
 
 
 def test_alike_comparisons_of_a_function_are_matched_by_their_order():
