@@ -50,8 +50,7 @@ class Verdict:
     ``order`` are parameters (names as in `pytpc.diagnosis.scores.score_tables.Tpcs.names`), the
     most suspicious first; all others are tied behind them. ``confidence`` is the probability that
     the first one is to blame, and ``none`` that it is none of them; nan where a method has none.
-    ``scores`` are those by which the order
-    was made: equal ones are tied; empty where no two are.
+    ``scores`` are those by which the order was made: equal ones are tied; empty where no two are.
     """
 
     order: tuple[str, ...]

@@ -19,6 +19,7 @@ import pytpc_evaluation
 from pytpc.base.errors import InputError
 from pytpc.recording.graph_file import GRAPH_FILE
 from pytpc.recording.mission import EVENTS_FILE, MARKS_FILE, SUMMARIES_FILE
+from pytpc_evaluation.demo.demo_examples import EXAMPLES
 from pytpc_evaluation.study.case import Method
 from pytpc_evaluation.study.changes import CHANGES_FILE
 from pytpc_evaluation.study.dataset import CAUSES_FILE, MARKED_FILE
@@ -43,6 +44,7 @@ def mission_digest(out: Path, mission: Path, half: str) -> str:
     system = mission.parent.parent.name
     own = (*_RECORDING, MARKED_FILE, CHANGES_FILE, TREATMENT_FILE, CAUSES_FILE, GRAPH_FILE)
     files = [mission / name for name in own]
+    files += [example.folder / "study.json" for example in EXAMPLES if example.name == system]
     good = [out / "reference" / system, *sorted((out / "good" / system).glob("seed-*"))]
     files += [folder / name for folder in good for name in _RECORDING]
     files.append(out / "systems" / system / "static.json")
