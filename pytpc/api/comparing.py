@@ -4,12 +4,19 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-from pytpc.api.missions import Source, about_mission, load_static, read, with_names_of
+from pytpc.api.missions import (
+    Source,
+    about_mission,
+    load_static,
+    read,
+    reported_keys,
+    with_names_of,
+)
 from pytpc.api.static_of_mission import recorded_static
 from pytpc.base.errors import InputError, TpcError
 from pytpc.base.regular_files import has_same_content
@@ -93,23 +100,10 @@ class RecordedRun:
         What this build does not have keeps its key, and counts nowhere.
         """
         names = {} if self.static_file is None else _names_in(static_info, self.static_file)
-        if names.keys().isdisjoint(self._keys):
+        recording = self.recording
+        if names.keys().isdisjoint(map(base_key, reported_keys(recording))):
             return self
-        recording = self.recording
-        events, summaries = recording.events, recording.summaries
-        said = [replace(one, key=renamed((one.key,), names)[0]) for one in recording.names]
-        moved = replace(
-            recording,
-            events=replace(events, keys=renamed(events.keys, names)),
-            summaries=replace(summaries, keys=renamed(summaries.keys, names)),
-            names=tuple(sorted(said)),
-        )
-        return replace(self, recording=moved)
-
-    @property
-    def _keys(self) -> Iterator[str]:
-        recording = self.recording
-        return map(base_key, (*recording.events.keys, *recording.summaries.keys))
+        return replace(self, recording=recording.with_keys(lambda key: renamed(key, names)))
 
     @cached_property
     def static_file(self) -> Path | None:

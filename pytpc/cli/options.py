@@ -185,14 +185,13 @@ def good_runs(sources: Sequence[Path], static: StaticInfo) -> list[RecordedRun]:
         InputError: one cannot be read, or its reports are of no comparison of this build.
     """
     read: dict[Path, RecordedRun] = click.get_current_context().meta.setdefault(_GOOD, {})
-    found = []
-    for source in with_learned(sources):
+    named = with_learned(sources)
+    for source in named:
         if source not in read:
             read[source] = RecordedRun(recording_of(source), source)
             warn_of_marks(source, read[source].recording)
-        found.append(read[source].in_build(static))
-        check_reports(found[-1].recording, static, source)
-    return found
+        check_reports(read[source].in_build(static).recording, static, source)
+    return [read[source] for source in named]
 
 
 def warn_of_marks(source: Path, recording: Recording) -> None:
@@ -238,7 +237,11 @@ def refuse_itself(good: Sequence[RecordedRun], mission: Recording) -> None:
 def _is_learned_from(run: RecordedRun, mission: Recording) -> bool:
     if run.source is None or not (run.source / LEARNED_FILE).is_file():
         return False
-    return read_learned(run.source / LEARNED_FILE).digest == reports_digest(mission)
+    learned = read_learned(run.source / LEARNED_FILE)
+    # To read all reports of the mission takes longer than to judge it.
+    if (learned.start_ns, learned.end_ns) != (mission.start_ns, mission.end_ns):
+        return False
+    return learned.digest == reports_digest(mission)
 
 
 def warn_plainly(line: str) -> None:

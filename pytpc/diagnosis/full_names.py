@@ -280,14 +280,8 @@ def with_keys_of(reference: Recording, static_info: StaticInfo, named: StaticInf
         keys |= {key: next(spare) for key in moved if key not in keys and key in taken}
     if not keys:
         return reference
-    events, summaries = reference.events, reference.summaries
-    return replace(
-        reference,
-        events=replace(events, keys=tuple(keys.get(key, key) for key in events.keys)),
-        summaries=replace(summaries, keys=tuple(keys.get(key, key) for key in summaries.keys)),
-        # Asked again, its objects stay where they are.
-        names=tuple(replace(one, key=keys.get(one.key, one.key)) for one in reference.names),
-    )
+    # Asked again, its objects stay where they are.
+    return reference.with_keys(lambda key: keys.get(key, key))
 
 
 def _sources(static_info: StaticInfo, base: str) -> dict[str, str]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -123,6 +123,16 @@ class Recording:
             for key, node in np.argwhere(seen).tolist():
                 found[table.keys[key]].add(table.nodes[node])
         return {key: frozenset(nodes) for key, nodes in found.items()}
+
+    def with_keys(self, new: Callable[[str], str]) -> Recording:
+        """The recording with other keys: ``new`` gives a different one for each."""
+        events, summaries = self.events, self.summaries
+        return replace(
+            self,
+            events=replace(events, keys=tuple(map(new, events.keys))),
+            summaries=replace(summaries, keys=tuple(map(new, summaries.keys))),
+            names=tuple(sorted(replace(one, key=new(one.key)) for one in self.names)),
+        )
 
     @property
     def seconds(self) -> float:

@@ -90,11 +90,11 @@ def _paired(old: list[_Placed], new: list[_Placed]) -> dict[str, str]:
     }
 
 
-def renamed(keys: Iterable[str], names: Mapping[str, str]) -> tuple[str, ...]:
-    """The keys of a table under the names of this build; those of instances keep their number.
+def renamed(key: str, names: Mapping[str, str]) -> str:
+    """The key in this build; that of an instance keeps its number.
 
-    >>> renamed(["a", "b#2", "c"], {"a": "x", "b": "y"})
-    ('x', 'y#2', 'c')
+    >>> [renamed(key, {"a": "x", "b": "y"}) for key in ("a", "b#2", "c")]
+    ['x', 'y#2', 'c']
     """
-    bases = [(key, base_key(key)) for key in keys]
-    return tuple(names.get(base, base) + key[len(base) :] for key, base in bases)
+    base = base_key(key)
+    return names.get(base, base) + key[len(base) :]

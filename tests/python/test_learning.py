@@ -266,6 +266,26 @@ def test_a_key_that_is_another_comparison_there_is_not_trusted():
     assert keys_in(here, there) == {key(12): key(14), key(14): key(16)}
 
 
+# The keys of today are those of the other build, moved on by one: renamed twice, 0 would be 2.
+def test_the_keys_of_another_build_are_renamed_once(robot):
+    names = ("~max_speed", "~max_height", "~most")
+    code = [f"if (value > {name}_)" for name in names]
+    here = [comparison(n, name, source_code=code[n - 1]) for n, name in enumerate(names, 1)]
+    there = [comparison(n, name, source_code=code[n]) for n, name in enumerate(names)]
+    saved(robot / "before", flight("before", 4.0))
+    static_info(*there).save(robot / "before" / "static.json")
+    (robot / "before" / "run.json").write_text("{}")
+    run = flight("now", 1.0, [Mark(ns(37), "I")])
+    moved = run.with_keys(lambda one: {key(0): key(1), key(1): key(2)}[one])
+    saved(robot / "now", moved)
+    static_info(*here).save(robot / "now.json")
+    words = ("rank", robot / "now", "--static", robot / "now.json", "--json", "--reference")
+    result = asked(*words, robot / "before")
+    assert result.exit_code == 0, result.stderr
+    found = json.loads(result.stdout)[0]["diagnosis"]
+    assert [one["parameter"] for one in found["differences"]["parameters"]] == ["~max_speed"]
+
+
 def test_alike_comparisons_of_a_function_are_matched_by_their_order():
     here = static_info(comparison(0, "~a", lineno=20), comparison(1, "~a", lineno=30))
     there = static_info(comparison(5, "~a", lineno=25), comparison(4, "~a", lineno=35))
