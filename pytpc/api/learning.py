@@ -24,6 +24,7 @@ from pytpc.recording.profile import (
     LEARNED_FILE,
     LearnedRun,
     begin_profile,
+    is_profile,
     runs_in,
     write_learned,
 )
@@ -50,9 +51,10 @@ def learn(recording: Recording, source: Path, profile: Path) -> LearnedRun:
         TpcError: the profile cannot be written.
     """
     check_has_reports(recording, source)
-    begin_profile(profile)
     if (source / LEARNED_FILE).is_file():
         raise InputError("is a part of a profile already; give the recording itself", source)
+    if is_profile(source):
+        raise InputError("is a profile; give the recordings themselves", source)
     where = str(source.absolute())
     reports = len(recording.events) + len(recording.summaries)
     digest = reports_digest(recording)
@@ -62,6 +64,7 @@ def learn(recording: Recording, source: Path, profile: Path) -> LearnedRun:
     )
     # Who reads the profile reads these values; what is broken is said now.
     _ = RecordedRun(recording, source).values
+    begin_profile(profile)
     try:
         scratch = Path(tempfile.mkdtemp(prefix=".learning-", dir=profile))
         try:

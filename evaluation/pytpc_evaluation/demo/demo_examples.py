@@ -60,6 +60,11 @@ class Example:
         return self.folder / "config" / "params.yaml"
 
     @property
+    def study(self) -> Path:
+        """The file with what the study sets and asks: harmless changes, and places of errors."""
+        return self.folder / "study.json"
+
+    @property
     def observer(self) -> Path:
         """The program that sees what a person beside the robot sees."""
         return self.folder / "scripts" / "observer.py"

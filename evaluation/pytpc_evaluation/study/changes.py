@@ -23,7 +23,6 @@ from pytpc_evaluation.treatment import Treatment
 
 CHANGES_FILE = "changes.json"
 DECOYS = 8
-_LIST_FILE = "study.json"
 _LIST = "decoys"
 _FIELDS = ("parameter", "node", "new")
 
@@ -39,7 +38,7 @@ def harmless_changes(example: Example) -> dict[Change, frozenset[str]]:
     Raises:
         InputError: the file is no such list, or an entry changes no number of this robot's nodes.
     """
-    path = example.folder / _LIST_FILE
+    path = example.study
     if not path.exists():
         return {}
     document = parse_json(path)

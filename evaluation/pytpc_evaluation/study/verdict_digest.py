@@ -44,7 +44,7 @@ def mission_digest(out: Path, mission: Path, half: str) -> str:
     system = mission.parent.parent.name
     own = (*_RECORDING, MARKED_FILE, CHANGES_FILE, TREATMENT_FILE, CAUSES_FILE, GRAPH_FILE)
     files = [mission / name for name in own]
-    files += [example.folder / "study.json" for example in EXAMPLES if example.name == system]
+    files += [example.study for example in EXAMPLES if example.name == system]
     good = [out / "reference" / system, *sorted((out / "good" / system).glob("seed-*"))]
     files += [folder / name for folder in good for name in _RECORDING]
     files.append(out / "systems" / system / "static.json")

@@ -14,7 +14,6 @@ from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError
 from pytpc_evaluation.demo.demo_examples import EXAMPLES, Example
 
-_FILE = "study.json"
 _PLACES = "places"
 
 
@@ -25,7 +24,7 @@ def places_of(example: Example) -> Mapping[str | None, str]:
     Raises:
         InputError: the file has no such list.
     """
-    path = example.folder / _FILE
+    path = example.study
     if not path.exists():
         return {}
     document = parse_json(path)

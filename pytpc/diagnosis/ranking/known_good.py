@@ -18,7 +18,7 @@ from pytpc.diagnosis.thresholds.inverse import kept_as
 from pytpc.diagnosis.thresholds.units import NoUnitError, is_text, read_type, tree_of
 from pytpc.recording.events import Events
 from pytpc.recording.parameter_change import Change
-from pytpc.static.arithmetic import evaluate
+from pytpc.static.arithmetic import Tree, evaluate
 from pytpc.static.parameters import ByParameter
 from pytpc.static.static_info import StaticInfo
 
@@ -75,27 +75,24 @@ def before_changes(
     return found
 
 
-def _is_logged(static_info: StaticInfo, key: str) -> bool:
-    """Whether the log has the threshold of a comparison, and only its parameter decides it."""
+def _tree(static_info: StaticInfo, key: str) -> Tree | None:
+    """The way from the parameter to the threshold that is logged; None if there is no such one.
+
+    A text logs no threshold, and of some others more than the parameter decides.
+    """
     comparison, unit = static_info.comparisons[key], static_info.unit_of(key)
     if is_text(comparison, unit):
-        return False
+        return None
     try:
-        kept_as(tree_of(comparison), read_type(comparison, unit))
+        return kept_as(tree_of(comparison), read_type(comparison, unit))
     except NoUnitError:
-        return False
-    return True
+        return None
 
 
 def _threshold(static_info: StaticInfo, key: str, value: float) -> float:
     """That of a comparison with this value of its parameter; nan if the way there is not known."""
-    comparison, unit = static_info.comparisons[key], static_info.unit_of(key)
-    if is_text(comparison, unit):
-        return math.nan
-    try:
-        return evaluate(kept_as(tree_of(comparison), read_type(comparison, unit)), value)
-    except NoUnitError:
-        return math.nan
+    tree = _tree(static_info, key)
+    return math.nan if tree is None else evaluate(tree, value)
 
 
 def of_good_run(tpcs: Tpcs, events: Events, reference: Events) -> dict[str, float]:
@@ -129,17 +126,13 @@ def of_references(
     prior: dict[str, float] = {}
     others: dict[str, float] = {}
     for code, name in enumerate(tpcs.parameters):
-        now, known = (
-            float(here[code]),
-            [float(one[code]) for one in there if one[code] == one[code]],
-        )
-        key = tpcs.keys[code]
-        if math.isnan(now) or not known:
+        key, now = tpcs.keys[code], float(here[code])
+        known = [float(one[code]) for one in there if not math.isnan(one[code])]
+        comparison = static_info.comparisons[key]
+        if math.isnan(now) or not known or is_text(comparison, static_info.unit_of(key)):
             continue
-        if is_text(static_info.comparisons[key], static_info.unit_of(key)):
-            continue
-        ordered = static_info.comparisons[key].relation in _ORDERED
-        least = BETWEEN if ordered and min(known) < now < max(known) else 0.0
+        is_between = comparison.relation in _ORDERED and min(known) < now < max(known)
+        least = BETWEEN if is_between else 0.0
         kept = min(least, *(of_change(then, now) for then in known))
         prior[name] = max(prior.get(name, UNCHANGED), kept)
         if kept != UNCHANGED:
@@ -175,7 +168,7 @@ def of_settings(static_info: StaticInfo, tpcs: Tpcs, events: Events) -> KnownGoo
     prior: dict[str, float] = {}
     others: dict[str, float] = {}
     for code in np.flatnonzero(np.isnan(thresholds_of(events, tpcs))).tolist():
-        if not _is_logged(static_info, tpcs.keys[code]):
+        if _tree(static_info, tpcs.keys[code]) is None:
             continue
         rows = own.by_key.rows(code)
         for node in np.unique(own.node[rows]).tolist():

@@ -68,41 +68,41 @@ class End:
 class Reach:
     """The way of messages through a recorded graph.
 
-    ``calls`` are pairs of a node and a service that its code names, by full names: who calls a
-    service is in no graph.
+    ``calls`` are the nodes whose code names a service, by its full name: who calls a service is in
+    no graph.
     """
 
     wiring: Wiring
-    calls: frozenset[tuple[str, str]]
+    calls: Mapping[str, frozenset[str]]
 
     @classmethod
     def of(cls, static_info: StaticInfo, wiring: Wiring | None) -> Reach | None:
         """The graph of a mission; None if it was not recorded."""
         if wiring is None or not wiring.topics:
             return None
-        calls = set()
+        calls = defaultdict[str, set[str]](set)
         for unit in static_info.units:
             ran = {node for one in unit.comparisons for node in wiring.nodes_of(unit, one)}
-            names = {one.topic for one in unit.comparisons} | {one.topic for one in unit.exposing}
-            calls |= {(node.name, node.topic(name)) for node in ran for name in names if name}
-        known = (one for one in calls if one[0] in wiring.connected and one[1].startswith("/"))
-        return cls(wiring, frozenset(one for one in known if one[1] not in wiring.topics))
+            ran = {node for node in ran if node.name in wiring.connected}
+            said = {one.topic for one in unit.comparisons} | {one.topic for one in unit.exposing}
+            for node in ran:
+                for name in map(node.topic, filter(None, said)):
+                    if name.startswith("/") and name not in wiring.topics:
+                        calls[name].add(node.name)
+        return cls(wiring, {name: frozenset(nodes) for name, nodes in calls.items()})
 
     @cached_property
     def senders(self) -> Mapping[str, frozenset[str]]:
         """The nodes that publish each topic, or call each service."""
-        found = defaultdict[str, set[str]](set)
-        for name, topic in self.wiring.topics.items():
-            found[name] |= topic.publishers
-        for node, name in self.calls:
-            found[name].add(node)
-        return {name: frozenset(nodes) for name, nodes in found.items() if name not in _OWN_TOPICS}
+        published = {name: topic.publishers for name, topic in self.wiring.topics.items()}
+        every = {**published, **self.calls}
+        return {name: nodes for name, nodes in every.items() if name not in _OWN_TOPICS}
 
     @cached_property
     def callers(self) -> Mapping[str, frozenset[str]]:
         """The nodes that are known to call each service that another node offers."""
         return {
-            name: frozenset(node for node, called in self.calls if called == name)
+            name: self.calls.get(name, frozenset())
             for name in self.wiring.services
             if name.rpartition("/")[2] not in _OWN_SERVICES and ROS2_ACTION not in name
         }
@@ -141,13 +141,15 @@ class Reach:
                     found[node] |= robots(topic.publishers) - {node}
         return {node: frozenset(others) for node, others in found.items()}
 
-    def is_heard(self, node: str) -> bool:
-        """Whether another node of the robot hears it, or may; so if it is not in the graph."""
-        if node not in self.wiring.connected or self.hearers.get(node):
-            return True
-        if node in self.answers_anybody:
-            return True
-        return not {name for one, name in self.calls if one == node} <= self.wiring.services.keys()
+    @cached_property
+    def unheard(self) -> frozenset[str]:
+        """The nodes that no other node of the robot hears, as far as the graph can tell.
+
+        Who offers a service that a node calls may not have been recorded.
+        """
+        unknown = (nodes for name, nodes in self.calls.items() if name not in self.wiring.services)
+        heard = {node for node, others in self.hearers.items() if others}
+        return self.wiring.connected - heard - self.answers_anybody.union(*unknown)
 
     def end(self, where: str) -> End | None:
         """What a person means by a place; None if no node of the robot acts at one called so.
@@ -156,21 +158,17 @@ class Reach:
         that node, unless it is an action, too.
         """
         actions = action_names(self.wiring.topics)
-        acting = _named(where, actions)
-        if acting:
-            topics = frozenset(one for one in self.senders if action_of(one, actions) in acting)
-            nodes = frozenset[str]().union(*(self.senders[one] for one in topics))
-        else:
-            topics = _named(where, {*self.senders, *self.wiring.services})
-            offered = self.wiring.services
-            nothing = frozenset[str]()
-            by = (self.senders.get(one) or offered.get(one, nothing) for one in topics)
-            nodes = nothing.union(*by)
         known = robots(self.wiring.connected)
-        full = f"/{where.strip('~/')}"
-        if (full in known and not acting) or not robots(nodes):
-            topics, nodes = frozenset(), _named(where, known)
-        return End(topics, robots(nodes)) if robots(nodes) else None
+        acting = _named(where, actions)
+        topics = frozenset(one for one in self.senders if action_of(one, actions) in acting)
+        if not acting and _full(where) not in known:
+            topics = _named(where, {*self.senders, *self.wiring.services})
+        acted_by = (self.senders.get(one) or self.wiring.services[one] for one in topics)
+        nodes = robots(frozenset[str]().union(*acted_by))
+        if nodes:
+            return End(topics, nodes)
+        named = _named(where, known)
+        return End(frozenset(), named) if named else None
 
     def reaching(self, ends: Iterable[End]) -> frozenset[str]:
         """The nodes that can lead to one of these, themselves among them.
@@ -187,9 +185,13 @@ class Reach:
         return frozenset(found)
 
 
+def _full(said: str) -> str:
+    return f"/{said.strip('~/')}"
+
+
 def _named(said: str, names: Collection[str]) -> frozenset[str]:
     """The name that a person means: in full, or by its last parts."""
-    full = f"/{said.strip('~/')}"
+    full = _full(said)
     if full in names:
         return frozenset({full})
     ending = [name for name in names if name.endswith(full)]
@@ -223,7 +225,7 @@ def reach_prior(recording: Recording, static_info: StaticInfo, tpcs: Tpcs) -> Fl
             prior[column] = (
                 UNREACHED * known if not nodes & reaching else 0.0 if nodes & named else ELSEWHERE
             )
-        elif not any(map(reach.is_heard, nodes)):
+        elif nodes <= reach.unheard:
             prior[column] = UNHEARD * known
     return prior
 
@@ -243,7 +245,7 @@ def place_notes(recording: Recording, static_info: StaticInfo) -> tuple[str, ...
         return ("marks say where it was wrong, but the graph was not recorded (graph.json)",)
     names = sorted({*reach.senders, *reach.wiring.connected})
     unknown = [name for name in said if reach.end(name) is None]
-    hints = [did_you_mean(f"/{name.strip('~/')}", names) for name in unknown]
+    hints = [did_you_mean(_full(name), names) for name in unknown]
     return tuple(
         f"a mark says @{name}, which is no topic, service, action or node of the recorded graph"
         f"{hint}"

@@ -9,27 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 
 from pytpc_evaluation.study.metrics import Estimate, estimate, exact_share
-from pytpc_evaluation.study.report.confidence import accuses, rightness
+from pytpc_evaluation.study.report.confidence import SAID, accuses, rightness
 from pytpc_evaluation.study.report.parts import Part
 from pytpc_evaluation.study.report.positions import Position, ordered, with_absent
-from pytpc_evaluation.study.report.ranked import METHODS, percent
+from pytpc_evaluation.study.report.ranked import METHODS, OURS, SAY_NONE, percent
 from pytpc_evaluation.tables import Cell, Column, Table
-
-SAID = "confused"
-"""Types as people say them."""
-
-OURS = (
-    "tpc-log",
-    "tpc",
-    "tpc-other-defaults",
-    "tpc+where",
-    "tpc+1-run",
-    "tpc+2-runs",
-    "tpc+4-runs",
-    "tpc+2-runs+where",
-    "tpc+reference",
-)
-"""The methods that say how likely it is none of the parameters."""
 
 
 def observer_table(rows: Sequence[Position], part: Part) -> Table:
@@ -61,7 +45,7 @@ def observer_table(rows: Sequence[Position], part: Part) -> Table:
         found = [row for row in changed if row.method == method]
         marked = [row for row in found if row.marks]
         nobody = [row for row in own if row.method == method and not row.changed and row.marks]
-        sure = method in OURS
+        sure = method in {OURS, *SAY_NONE}
         cells = (
             percent(_share(marked, lambda row: row.within(1))),
             percent(_share(marked, lambda row: row.within(3))),

@@ -23,8 +23,7 @@ BASELINE = "thesis"
 CHANCE = "random"
 CHANCE_OF_DIFFERENT = "differs-at-random"
 TURNED = "turned-decisions"
-METHODS = (
-    OURS,
+SAY_NONE = (
     "tpc-log",
     "tpc-other-defaults",
     "tpc+where",
@@ -33,6 +32,11 @@ METHODS = (
     "tpc+4-runs",
     "tpc+2-runs+where",
     BESIDE_CLEAN,
+)
+"""With ours, the methods of which one observer's table has how likely it is none of them."""
+METHODS = (
+    OURS,
+    *SAY_NONE,
     "tpc+changes",
     BASELINE,
     "thesis-doubt",
