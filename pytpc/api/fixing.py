@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -13,6 +14,7 @@ from pytpc.api.fix_state import FixState, FixTry, Stand
 from pytpc.base.wording import Number, exact, show
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.results.advice import BlamedAdvice, Remedy
+from pytpc.diagnosis.results.suspects import Accused, Suspected, Uncompared
 from pytpc.diagnosis.suggestion.advise import advise_blamed, declared_for
 from pytpc.diagnosis.trying import (
     KNOWN_GOOD,
@@ -160,13 +162,14 @@ class Conversation:
         found, accused, parameter = advice.remedy, advice.accused, advice.accused.parameter
         assert found.value is not None, "what is proposed has a value"
         mission = self.state.mission
-        node = accused.last.node.partition(" ")[0]
+        compared = accused if isinstance(accused, Accused) else None
+        node = "" if compared is None else compared.last.node.partition(" ")[0]
         name, origin = name_on_robot(mission, found.parameter, node)
         changed = _changed_as(found, asked.question)
         if changed:
             name, origin = changed, read_origins(mission).get(changed, origin)
         standing = [one for one in tries if not one.undone]
-        base = _base_of(found, tries, accused.last.thresh)
+        base = _base_of(found, tries, math.nan if compared is None else compared.last.thresh)
         old = standing[-1].new if standing else base
         if found.value == old:
             return None
@@ -175,8 +178,6 @@ class Conversation:
         known += [float(one.new) for one in tries if one.basis in KNOWN_GOOD]
         if found.basis in {"reference", "before"}:
             known.append(float(found.value))
-        comparison = accused.comparison
-        code = (comparison.source_code or "").strip()
         would_be = FixTry(
             parameter,
             old,
@@ -190,7 +191,7 @@ class Conversation:
         return Proposal(
             would_be,
             advice.what_if.text if advice.what_if is not None and found.text else "",
-            f"{comparison.file}:{comparison.lineno}  {code}".rstrip(),
+            _acts_at(accused),
             beyond(found.value, known, declared, found.doubt),
             origin,
         )
@@ -267,7 +268,17 @@ def _base_of(found: Remedy, tries: Sequence[FixTry], threshold: float) -> Number
     return threshold if found.current is None else found.current
 
 
+def _acts_at(accused: Suspected) -> str:
+    """The source line of a suspect, or what else is known of it."""
+    if isinstance(accused, Uncompared):
+        return accused.difference.effect
+    found = accused.comparison
+    return f"{found.file}:{found.lineno}  {(found.source_code or '').strip()}".rstrip()
+
+
 def _declared(asked: AskedMission, advice: BlamedAdvice) -> Declared | None:
+    if isinstance(advice.accused, Uncompared):
+        return None
     source = asked.static_info.source_path(advice.accused.key)
     return declared_for(asked.question.declared or (), advice.accused, source)
 

@@ -166,7 +166,7 @@ def changes_of(found: RunDifferences) -> tuple[Change, ...]:
     """The differences as changes since the robot worked; a value that is no number is nan."""
     changes = []
     for one in found.found:
-        old, new = _number(one.good.value), _number(one.bad.value)
+        old, new = one.good.number, one.bad.number
         old, new = (math.nan if value is None else value for value in (old, new))
         changes.append(Change(one.parameter, "", old, new))
     return tuple(changes)
@@ -334,7 +334,7 @@ def _source_of(
 
 def _replayed(found: Difference, bad: RunValues, known: _Known, window_s: float) -> Difference:
     """The difference with its comparisons replayed; as it is where the value is no number."""
-    value = _number(found.good.value)
+    value = found.good.number
     if value is None:
         return found
     recording, replayed = bad.recording, []
@@ -397,11 +397,3 @@ def _notes(bad: RunValues, good: Sequence[RunValues], static_info: StaticInfo) -
         which = listed(sorted(several), _NAMED)
         notes.append(f"not compared, as the reports of a run have several values: {which}")
     return tuple(notes)
-
-
-def _number(value: object) -> float | None:
-    """The value as a double; None if it is no number, or larger than any double."""
-    try:
-        return float(value) if isinstance(value, bool | int | float) else None
-    except OverflowError:
-        return None

@@ -14,7 +14,7 @@ from pytpc.base.wording import exact, percent, plain, show, shown_value
 from pytpc.diagnosis.results.advice import Advice
 from pytpc.diagnosis.results.diagnosis import Diagnosis
 from pytpc.diagnosis.results.differences import RunDifferences
-from pytpc.diagnosis.results.suspects import MarkRanking
+from pytpc.diagnosis.results.suspects import MarkRanking, Suspected, Uncompared
 
 _GAP = 2
 _DIFFERENCES = 8
@@ -137,6 +137,12 @@ class Advices(TableSequence[Advice]):
         return NotebookTable(headings, tuple(rows), frozenset({0, 2}))
 
 
+def _acts_at(found: Suspected) -> str:
+    if isinstance(found, Uncompared):
+        return found.difference.effect
+    return f"{found.comparison.file}:{found.comparison.lineno}"
+
+
 @dataclass(frozen=True)
 class Diagnosed(Diagnosis):
     """The answer about a mission, to look at in a terminal or a notebook."""
@@ -150,7 +156,8 @@ class Diagnosed(Diagnosis):
         """All suspects, flat; ``pandas.DataFrame(diagnosed.rows())``.
 
         Each has ``position``, ``parameter``, ``probability``, ``type``, ``place`` (``file:line``)
-        and ``key``.
+        and ``key``. Of one that no comparison reports, type and key are None, and its place is what
+        is known of it in words.
         """
         return [
             {
@@ -158,7 +165,7 @@ class Diagnosed(Diagnosis):
                 "parameter": one.parameter,
                 "probability": one.probability,
                 "type": one.type,
-                "place": f"{one.comparison.file}:{one.comparison.lineno}",
+                "place": _acts_at(one),
                 "key": one.key,
             }
             for one in self.blame.suspects
@@ -175,10 +182,10 @@ class Diagnosed(Diagnosis):
                     f"{accused.position}{'=' if accused.tied else ''}",
                     accused.parameter,
                     percent(accused.probability),
-                    accused.type,
-                    show(accused.last.thresh if tried.current is None else tried.current),
+                    accused.type or "",
+                    one.current,
                     what if tried.direction else f"none: {tried.reason}",
-                    f"{accused.comparison.file}:{accused.comparison.lineno}",
+                    _acts_at(accused),
                 )
             )
         headings = ("#", "parameter", "probability", "type", "value", "to try", "compared at")

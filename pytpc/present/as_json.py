@@ -20,7 +20,7 @@ from pytpc.diagnosis.results.advice import (
 from pytpc.diagnosis.results.diagnosis import Diagnosis
 from pytpc.diagnosis.results.differences import Difference, RunDifferences, SetValue
 from pytpc.diagnosis.results.live import LiveRow, Look
-from pytpc.diagnosis.results.suspects import MarkRanking, Suspect
+from pytpc.diagnosis.results.suspects import Accused, MarkRanking, Suspect, Uncompared
 from pytpc.present.watch_screen import Status
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark
@@ -196,6 +196,9 @@ def _difference(found: Difference) -> Json:
 def _blamed(found: BlamedAdvice) -> Json:
     accused = found.accused
     tried = None if found.what_if is None else fields_json(found.what_if)
+    silent = accused if isinstance(accused, Uncompared) else None
+    compared = accused if isinstance(accused, Accused) else None
+    comparison = compared and compared.comparison
     return {
         "position": accused.position,
         "tied": accused.tied,
@@ -203,11 +206,12 @@ def _blamed(found: BlamedAdvice) -> Json:
         "probability": accused.probability,
         "type": accused.type,
         "key": accused.key,
-        "file": accused.comparison.file,
-        "lineno": accused.comparison.lineno,
-        "source_code": accused.comparison.source_code,
-        "topic": accused.comparison.topic,
-        "node": accused.last.node,
+        "file": comparison and comparison.file,
+        "lineno": comparison and comparison.lineno,
+        "source_code": comparison and comparison.source_code,
+        "topic": comparison and comparison.topic,
+        "node": compared and compared.last.node,
+        "uncompared": silent and silent.difference.effect,
         "followed": [asdict(one) for one in accused.followed],
         "remedy": {**remedy_json(found.remedy), "what_if": tried},
     }

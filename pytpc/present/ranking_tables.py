@@ -19,7 +19,7 @@ from pytpc.diagnosis.results.advice import (
 )
 from pytpc.diagnosis.results.diagnosis import Diagnosis
 from pytpc.diagnosis.results.differences import Difference, RunDifferences
-from pytpc.diagnosis.results.suspects import MarkRanking
+from pytpc.diagnosis.results.suspects import MarkRanking, Suspected, Uncompared
 from pytpc.present.listing import Heading, Listing
 from pytpc.recording.marks import MarkType
 from pytpc.recording.mission import Recording
@@ -153,15 +153,14 @@ def _difference_cells(one: Difference, *, each: bool) -> list[Text]:
 
 def _blamed_cells(one: BlamedAdvice) -> list[Text]:
     accused, tried = one.accused, one.remedy
-    current = accused.last.thresh if tried.current is None else tried.current
     return [
         Text(f"{accused.position}=" if accused.tied else str(accused.position)),
         Text(plain(accused.parameter), style="bold" if accused.position == 1 else ""),
         Text(percent(accused.probability)),
-        Text(_KINDS[accused.type]),
-        Text(show(current)),
+        Text("" if accused.type is None else _KINDS[accused.type]),
+        Text(one.current),
         _advised(tried),
-        _place(accused.comparison),
+        _acts_at(accused),
     ]
 
 
@@ -225,6 +224,13 @@ def _advised(found: Suggestion | Remedy) -> Text:
     return Text(f"{_WAYS[found.direction]} ").append(exact(found.value), style="bold")
 
 
+def _acts_at(found: Suspected) -> Text:
+    """The source line; of a parameter that no comparison reports, what is known of it."""
+    if isinstance(found, Uncompared):
+        return Text(plain(found.difference.effect))
+    return _place(found.comparison)
+
+
 def _place(found: Comparison) -> Text:
     """The source line and the condition below it."""
     place = Text(plain(f"{found.file}:{found.lineno}"))
@@ -258,7 +264,10 @@ def _suggested(found: Diagnosis, one: BlamedAdvice) -> RenderableType:
     else:
         line.append(plain(tried.text), style=style)
     lines = [line, Text(f"   {percent(accused.probability)} that it is this one", style=style)]
-    lines.append(_place_line(accused.comparison))
+    if isinstance(accused, Uncompared):
+        lines.append(Text(plain(f"   {accused.difference.effect}"), style="dim"))
+    else:
+        lines.append(_place_line(accused.comparison))
     if one.what_if is not None:
         lines.append(Text(plain(f"   {one.what_if.text}")))
     lines += [Text(plain(f"   it {each.sentence}")) for each in accused.followed]

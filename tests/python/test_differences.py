@@ -161,7 +161,7 @@ def test_the_default_of_another_node_is_not_taken():
     good = RunValues("good", flight(5, node="/two"), {"/two/radius": 1})
     now = {"/two/radius": 1, "/uav/faces": 12}
     (one,) = found_in(RunValues("bad", flight(12), now), good).found
-    assert (one.good.value, one.bad.value, one.is_reported) == (None, 12, True)
+    assert (one.good.value, one.bad.value, one.is_silent) == (None, 12, False)
     assert one.effect == (
         "compared at src/node.cpp:10: not replayed, as the good run's value is not known"
     )
@@ -305,8 +305,7 @@ def test_differences_are_changes_for_the_ranking():
     assert second.new != second.new
 
 
-@pytest.fixture
-def runs(tmp_path):
+def recorded(tmp_path):
     """Two recorded missions with their parameters, and the static information."""
 
     def record(name, faces, radius, first, *marks):
@@ -329,6 +328,11 @@ def runs(tmp_path):
     STATIC.save(static)
     good, bad = record("monday", 5, 0.17, 2), record("tuesday", 5, 0.42, 1, 12.0, 15.0)
     return good, bad, static
+
+
+@pytest.fixture
+def runs(tmp_path):
+    return recorded(tmp_path)
 
 
 def asked(*words):
@@ -367,14 +371,14 @@ def test_diff_says_once_what_became_of_the_only_comparison(several):
     assert text.count("first at 5.0 s") == 1, text
 
 
-# Every compared parameter kept its value: none of them is likely, and none is listed.
+# Every compared parameter kept its value: none of them is likely, and only ~radius is listed.
 def test_the_verdict_names_what_differs_and_is_not_reported(runs):
     good, bad, static = runs
     found = pytpc.diagnose(bad, static, reference=good)
     assert found.accused is None
-    assert found.shown == ()
-    assert found.action == ""
-    assert found.headline.startswith("not sure: most likely none of the compared parameters (")
+    assert [one.accused.parameter for one in found.shown] == ["~radius"]
+    assert found.action == "lower ~radius from 0.42 to 0.17 (the value of the good run)"
+    assert found.headline.startswith("not sure: ~radius is likeliest (")
     assert found.headline.endswith(
         "; ~radius 0.17 -> 0.42 differs from the good run, and no comparison reports it"
     )

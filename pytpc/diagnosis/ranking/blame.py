@@ -6,8 +6,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+import sys
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from itertools import groupby
 
 from pytpc.base.wording import many
 from pytpc.diagnosis.question import PLAIN, Question
@@ -18,7 +21,14 @@ from pytpc.diagnosis.ranking.posterior import Decisive, Posterior
 from pytpc.diagnosis.ranking.reach import place_notes
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.ranking.summarised import with_summarised
-from pytpc.diagnosis.results.suspects import Accused, Blame, Evaluation
+from pytpc.diagnosis.ranking.uncompared import with_uncompared
+from pytpc.diagnosis.results.suspects import (
+    Accused,
+    Blame,
+    Evaluation,
+    Suspected,
+    Uncompared,
+)
 from pytpc.diagnosis.scores.evaluations import KeyRows, LoggedEvaluations
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.recording.events import Events
@@ -27,7 +37,7 @@ from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
 
 _DIGITS = 9
-"""Digits after which scores are tied."""
+"""Digits of the logarithms of probabilities after which suspects are tied."""
 
 
 def blame(recording: Recording, static_info: StaticInfo, question: Question = PLAIN) -> Blame:
@@ -59,12 +69,20 @@ def blame(recording: Recording, static_info: StaticInfo, question: Question = PL
     )
     streams = ResultStreams.of(with_summarised(recording), tpcs)
     others = OtherNodes.of(streams, tpcs, static_info, recording.wiring)
-    suspects = _suspects(found, static_info, recording.marks, events)
+    compared = _compared(found, static_info, recording.marks, events)
     if others is not None:
         last_ns = max(mark.time_ns for mark in recording.marks)
-        suspects = _with_followed(suspects, others, (last_ns - streams.begin_ns) / 1e9)
-    code = None if question.differences is None else question.differences.code
-    made = Blame(suspects, found.none, len(tpcs.names), recording.marks, notes, code)
+        compared = _with_followed(compared, others, (last_ns - streams.begin_ns) / 1e9)
+    differences = question.differences
+    left, silent = with_uncompared(found, recording, streams, differences)
+    suspects = _in_order(
+        [
+            *(replace(one, probability=left * one.probability) for one in compared),
+            *(Uncompared(1, False, one.probability, one.difference) for one in silent),
+        ]
+    )
+    code = None if differences is None else differences.code
+    made = Blame(suspects, left * found.none, len(tpcs.names), recording.marks, notes, code)
     if len(recording.marks) > 1 or made.accused is not None:
         return made
     return replace(
@@ -72,21 +90,33 @@ def blame(recording: Recording, static_info: StaticInfo, question: Question = PL
     )
 
 
-def _suspects(
+def _in_order(suspects: Iterable[Suspected]) -> tuple[Suspected, ...]:
+    """The suspects with their positions, the likeliest first; equal ones as they are given."""
+    made: list[Suspected] = []
+    for _, equal in groupby(sorted(suspects, key=_unlikely), key=_unlikely):
+        alike = list(equal)
+        position, tied = len(made) + 1, len(alike) > 1
+        made += [replace(one, position=position, tied=tied) for one in alike]
+    return tuple(made)
+
+
+def _unlikely(suspect: Suspected) -> float:
+    return -round(math.log(max(suspect.probability, sys.float_info.min)), _DIGITS)
+
+
+def _compared(
     found: Posterior, static_info: StaticInfo, marks: Sequence[Mark], events: Events
 ) -> tuple[Accused, ...]:
-    order = found.order
-    scores = [round(float(found.scores[column]), _DIGITS) for column in order]
+    """The compared parameters, without their positions."""
     last_ns = max(mark.time_ns for mark in marks)
     suspects: list[Accused] = []
-    for place, column in enumerate(order):
+    for column in found.order:
         by = found.decisive[column]
         assert by is not None, "what is in the order was compared"
-        same = place > 0 and scores[place] == scores[place - 1]
         suspects.append(
             Accused(
-                position=suspects[-1].position if same else place + 1,
-                tied=scores.count(scores[place]) > 1,
+                position=1,
+                tied=False,
                 parameter=found.names[column],
                 probability=float(found.posterior[column]),
                 type="I" if by.type1 > 1 / 2 else "II",

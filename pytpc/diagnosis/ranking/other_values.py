@@ -82,8 +82,9 @@ def nobody(differences: RunDifferences | None) -> float:
     if not differences.code.is_same:
         return NOBODY + math.log(OTHER_CODE)
     score = NOBODY + math.log(1.0 - FAULTS * (1.0 - HIDDEN))
-    candidates = sum(one.turned_near > 0 for one in differences.found)
-    if not candidates or not differences.is_complete or differences.unreported:
+    candidates = len(differences.unreported)
+    candidates += sum(one.turned_near > 0 for one in differences.found)
+    if not candidates or not differences.is_complete:
         return score
     return score + min(0.0, math.log(candidates / CANDIDATES))
 

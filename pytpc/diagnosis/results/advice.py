@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 from pytpc.base.columns import Floats, Int64s
-from pytpc.base.wording import Number
+from pytpc.base.wording import Number, show, shown_value
 from pytpc.diagnosis.question import Source
-from pytpc.diagnosis.results.suspects import Accused, Suspect
+from pytpc.diagnosis.results.suspects import Suspect, Suspected, Uncompared
 from pytpc.diagnosis.thresholds.intervals import Intervals
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark, MarkType
@@ -146,9 +146,17 @@ class Advice:
 class BlamedAdvice:
     """A parameter that all marks suspect, with the value to try and what it would have changed."""
 
-    accused: Accused
+    accused: Suspected
     remedy: Remedy
     what_if: WhatIf | None
+
+    @property
+    def current(self) -> str:
+        """The parameter's value in the mission, for people."""
+        if isinstance(self.accused, Uncompared):
+            return shown_value(self.accused.difference.bad.value)
+        known = self.remedy.current
+        return show(self.accused.last.thresh if known is None else known)
 
     @property
     def stops(self) -> bool:

@@ -11,7 +11,7 @@ from functools import cached_property
 from pytpc.base.wording import listed, many, percent
 from pytpc.diagnosis.results.advice import BlamedAdvice
 from pytpc.diagnosis.results.differences import Difference, RunDifferences
-from pytpc.diagnosis.results.suspects import WORTH, Accused, Blame
+from pytpc.diagnosis.results.suspects import WORTH, Blame, Suspected
 
 _NAMED = 3
 
@@ -68,7 +68,7 @@ class Diagnosis:
         return self.advice[:1]
 
     @property
-    def folded(self) -> tuple[Accused, ...]:
+    def folded(self) -> tuple[Suspected, ...]:
         """The suspects that are only counted."""
         listed_here = {one.accused.parameter for one in self.shown}
         return tuple(one for one in self.blame.suspects if one.parameter not in listed_here)
@@ -108,7 +108,7 @@ class Diagnosis:
         if not found.suspects:
             return f"not sure: {self._silent}"
         if self.is_none_likeliest:
-            none = f"none of the compared parameters ({percent(found.none)})"
+            none = f"none of the parameters ({percent(found.none)})"
             return f"not sure: most likely {none}; {self._silent}"
         first = found.suspects[0]
         likeliest = f"{first.parameter} is likeliest ({percent(first.probability)})"

@@ -23,6 +23,14 @@ class SetValue:
     value: object
     place: str = ""
 
+    @property
+    def number(self) -> float | None:
+        """The value as a double; None if it is no number, or larger than any double."""
+        try:
+            return float(self.value) if isinstance(self.value, bool | int | float) else None
+        except OverflowError:
+            return None
+
 
 @dataclass(frozen=True, slots=True)
 class ReplayedComparison:
@@ -92,9 +100,9 @@ class Difference:
         return sum(one.turned_near for one in self.replayed)
 
     @property
-    def is_reported(self) -> bool:
-        """Whether the mission has a report of it, so that a diagnosis can judge it."""
-        return bool(self.keys)
+    def is_silent(self) -> bool:
+        """Whether no report of the mission says anything about it."""
+        return not self.keys
 
     @property
     def effect(self) -> str:
@@ -112,7 +120,7 @@ class Difference:
 
     @property
     def _replay(self) -> str:
-        if not self.is_reported:
+        if self.is_silent:
             return "not evaluated in this mission"
         if self.replayed:
             unsure = sum(one.unsure for one in self.replayed)
@@ -190,7 +198,7 @@ class RunDifferences:
     @property
     def unreported(self) -> tuple[Difference, ...]:
         """Those that analysed nodes read, and that no comparison reported: the log is silent."""
-        return tuple(one for one in self.found if one.state is not None and not one.is_reported)
+        return tuple(one for one in self.found if one.state is not None and one.is_silent)
 
     @property
     def line(self) -> str:

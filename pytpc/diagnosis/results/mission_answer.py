@@ -66,7 +66,8 @@ class MissionAnswer:
 
     The ``top`` of its ``question`` is how many suspects of a mark have all evidence. ``diagnosis``
     is None without marks, ``curves`` if no mark has a suspect, ``lead`` if the diagnosis shows
-    none. ``warnings`` say what is wrong with the recording.
+    none, or first one that no comparison reports. ``warnings`` say what is wrong with the
+    recording.
     """
 
     question: Question

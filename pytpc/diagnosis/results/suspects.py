@@ -9,15 +9,15 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection
 from dataclasses import dataclass, replace
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple, TypeAlias, TypeVar
 
 from pytpc.base.wording import percent
-from pytpc.diagnosis.results.differences import CodeComparison
+from pytpc.diagnosis.results.differences import CodeComparison, Difference
 from pytpc.recording.marks import Mark, MarkType
 from pytpc.static.link_unit import Comparison
 from pytpc.static.parameters import ByParameter, same_parameter
 
-Named = TypeVar("Named", "Suspect", "Accused")
+Named = TypeVar("Named", "Suspect", "Suspected")
 
 
 class Evaluation(NamedTuple):
@@ -156,15 +156,42 @@ class Accused:
 
 
 @dataclass(frozen=True, slots=True)
-class Blame:
-    """The judgement of all marks of a mission: the compared parameters, the likeliest first.
+class Uncompared:
+    """A parameter that no comparison of the mission reports, and that differs from good runs.
 
-    ``none`` is the probability that it is none of the ``parameters``. ``notes`` say what keeps the
-    judgement from being surer. ``code`` compares the code with that of the good runs; None if it is
-    not known.
+    ``position``, ``tied`` and ``probability`` are as in `Accused`; there is no type of error, no
+    ``key``, and nobody ``followed``.
     """
 
-    suspects: tuple[Accused, ...]
+    position: int
+    tied: bool
+    probability: float
+    difference: Difference
+    type: None = None
+    key: None = None
+    followed: tuple[Followed, ...] = ()
+
+    @property
+    def parameter(self) -> str:
+        """What an answer calls it."""
+        return self.difference.name
+
+
+Suspected: TypeAlias = "Accused | Uncompared"
+"""A parameter that all marks of a mission suspect."""
+
+
+@dataclass(frozen=True, slots=True)
+class Blame:
+    """The judgement of all marks of a mission: the suspects, the likeliest first.
+
+    They are all compared parameters, and what differs from good runs and no comparison reports.
+    ``none`` is the probability that it is none of them; ``parameters`` counts those that are
+    compared anywhere in the code. ``notes`` say what keeps the judgement from being surer. ``code``
+    compares the code with that of the good runs; None if it is not known.
+    """
+
+    suspects: tuple[Suspected, ...]
     none: float
     parameters: int
     marks: tuple[Mark, ...]
@@ -178,8 +205,12 @@ class Blame:
 
     @property
     def accused(self) -> str | None:
-        """The parameter that is sure enough to be blamed, if there is one."""
-        return self.suspects[0].parameter if self.confidence >= SURE else None
+        """The parameter that is sure enough to be blamed, if there is one.
+
+        Nobody is blamed of whom no comparison says what it did.
+        """
+        sure = self.confidence >= SURE and isinstance(self.suspects[0], Accused)
+        return self.suspects[0].parameter if sure else None
 
     @property
     def text(self) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from pytpc.base.wording import Number, show
+from pytpc.base.wording import Number, show, shown_value
 from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.results.advice import (
     Advice,
@@ -19,8 +19,15 @@ from pytpc.diagnosis.results.advice import (
     Suggestion,
     WhatIf,
 )
-from pytpc.diagnosis.results.suspects import Accused, Blame, MarkRanking, Suspect
-from pytpc.diagnosis.suggestion.remedy import remedy, restored
+from pytpc.diagnosis.results.differences import Difference
+from pytpc.diagnosis.results.suspects import (
+    Accused,
+    Blame,
+    MarkRanking,
+    Suspect,
+    Uncompared,
+)
+from pytpc.diagnosis.suggestion.remedy import NAMES, remedy, restored
 from pytpc.diagnosis.suggestion.smallest_change import At, smallest_change
 from pytpc.diagnosis.suggestion.what_if import what_if
 from pytpc.diagnosis.thresholds.intervals import holds
@@ -301,6 +308,9 @@ def advise_blamed(
     """
     found = []
     for accused in blame.suspects[: question.top]:
+        if isinstance(accused, Uncompared):
+            found.append(BlamedAdvice(accused, as_in_the_good_run(accused.difference), None))
+            continue
         name = accused.parameter
         about = declared_for(question.declared or (), accused, static_info.source_path(accused.key))
         untyped = [replace(mark, type=None) for mark in blame.marks]
@@ -311,6 +321,16 @@ def advise_blamed(
         then = _replayed(recording, static_info, value, asked)
         found.append(BlamedAdvice(accused, *_with_effect(value, then)))
     return stopping_last(found)
+
+
+def as_in_the_good_run(found: Difference) -> Remedy:
+    """What to try for a parameter that no comparison reports: the value of the good run."""
+    good, current = found.good, found.bad.value
+    reason = f"it was {shown_value(good.value)} in the good run"
+    nothing = Remedy(found.name, None, None, None, None, reason, reason, None, None, None)
+    if not isinstance(current, bool | int | float) or good.number is None:
+        return nothing
+    return restored(replace(nothing, current=current), good.number, "reference", NAMES["reference"])
 
 
 def stopping_last(advice: Sequence[BlamedAdvice]) -> list[BlamedAdvice]:

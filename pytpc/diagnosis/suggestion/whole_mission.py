@@ -19,7 +19,7 @@ from pytpc.diagnosis.results.mission_answer import (
     Spans,
     SuspectAnswer,
 )
-from pytpc.diagnosis.results.suspects import Accused, MarkRanking, Suspect
+from pytpc.diagnosis.results.suspects import Accused, MarkRanking, Suspect, Uncompared
 from pytpc.diagnosis.scores.score_tables import STEP_S, rank_curves
 from pytpc.diagnosis.suggestion.advise import advise, alternatives, declared_for
 from pytpc.diagnosis.suggestion.smallest_change import At, smallest_change
@@ -92,11 +92,13 @@ def _lead(
     found: Diagnosis,
     question: Question,
 ) -> LeadAnswer | None:
-    """The evidence for the first suspect that the diagnosis shows."""
+    """The evidence for the first suspect that the diagnosis shows, if there is any in the log."""
     if not found.shown:
         return None
     advised = found.shown[0]
     told, accused = advised.remedy, advised.accused
+    if isinstance(accused, Uncompared):
+        return None
     if told.key is not None and told.key in static_info.comparisons:
         comparison = static_info.comparisons[told.key]
         kind = told.kind or accused.type

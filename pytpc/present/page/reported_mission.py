@@ -44,19 +44,20 @@ class ReportedMission:
         found = self.answer.differences
         return frozenset() if found is None else frozenset(k for d in found.found for k in d.keys)
 
-    def is_changed(self, parameter: str, key: str) -> bool:
+    def is_changed(self, parameter: str, key: str | None) -> bool:
         """Whether a parameter is known to have been changed.
 
         In a study it is the one that the study changed. Else it is one that differs from good runs.
 
         Args:
             parameter: as in the source.
-            key: of one of its comparisons; objects and nodes may have values of their own.
+            key: of one of its comparisons; objects and nodes may have values of their own. None for
+                a parameter that is a suspect because it differs.
         """
         changed = self.changed_parameter
         if changed is not None:
             return same_parameter(changed, parameter)
-        return key in self._differing
+        return key is None or key in self._differing
 
     def seconds(self, time_ns: int) -> float:
         """A time of the recording's clock as seconds since the recording began."""

@@ -9,7 +9,7 @@ import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from pytpc.base.wording import exact, percent, show, shown_value
+from pytpc.base.wording import exact, percent, shown_value
 from pytpc.diagnosis.results.advice import BlamedAdvice
 from pytpc.diagnosis.results.diagnosis import Diagnosis
 from pytpc.diagnosis.results.differences import Difference, RunDifferences
@@ -177,7 +177,7 @@ def lead_view(
     to_try = diagnosis is not None and diagnosis.to_try is not None
     tried = (told.value, lead.suggested) if to_try else (None, None)
     wanted = Wanted("to try", *tried, lead.feasible)
-    node = lead.advised.accused.last.node
+    node = accused.last.node
     setting = origin_for(mission.origins, accused.parameter, node, found.default)
     declared = lead.declared
     return LeadView(
@@ -185,7 +185,7 @@ def lead_view(
         changed=mission.is_changed(accused.parameter, accused.key),
         probability=percent(accused.probability),
         is_likeliest=to_try,
-        current=show(accused.last.thresh if told.current is None else told.current),
+        current=lead.advised.current,
         number=lead.number,
         type=accused.type,
         why=lead.why,
@@ -201,7 +201,7 @@ def lead_view(
         command=_command(mission, setting, lead.advised) if to_try else "",
         link=ids[1],
         figure=figures.draw(accused, lead.mark, wanted, declared, ids[0]),
-        followed=tuple(one.sentence for one in lead.advised.accused.followed),
+        followed=tuple(one.sentence for one in accused.followed),
     )
 
 

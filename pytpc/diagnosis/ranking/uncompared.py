@@ -1,0 +1,88 @@
+"""Suspects that no comparison reports: gains, frames, poses, and what the mission never asked.
+
+The log has nothing to say about such a parameter. It is a suspect because its value differs from
+those of good runs, with what the log would say of a parameter that fits to the marks neither well
+nor badly.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from pytpc.diagnosis.ranking.known_good import SET_ANEW
+from pytpc.diagnosis.ranking.mark_evidence import any_time, caused, marked
+from pytpc.diagnosis.ranking.other_values import ALONE, REPLAYED, nobody
+from pytpc.diagnosis.ranking.posterior import Posterior
+from pytpc.diagnosis.ranking.replayed_outcomes import LEAST_CHARGE
+from pytpc.diagnosis.ranking.result_streams import ResultStreams
+from pytpc.diagnosis.results.differences import Difference, RunDifferences
+from pytpc.recording.mission import Recording
+from pytpc.recording.parameter_values import ParameterValues
+
+READ_BY_NOBODY = -3.0
+"""The log odds of a parameter that no analysed node reads: one that was not analysed may. Not of
+one whose name is like one that a node reads and nobody set: a misspelt name leaves a default."""
+
+
+class Silent(NamedTuple):
+    """A parameter that no comparison of the mission reports, with its probability."""
+
+    difference: Difference
+    probability: float
+
+
+def with_uncompared(
+    found: Posterior,
+    recording: Recording,
+    streams: ResultStreams,
+    differences: RunDifferences | None,
+) -> tuple[float, tuple[Silent, ...]]:
+    """Judge what differs from good runs, and no comparison reports, beside the compared parameters.
+
+    Args:
+        found: the judgement of the compared parameters.
+        recording: with its marks, at least one.
+        streams: of the recording.
+        differences: what differs from good runs; None if there is none.
+
+    Returns:
+        The share that is left to the compared parameters and to "none of them", and the others, the
+        likeliest first.
+    """
+    silent = [] if differences is None else [one for one in differences.found if one.is_silent]
+    if not silent:
+        return 1.0, ()
+    order = found.order
+    level = found.scores[order[0]] - math.log(found.posterior[order[0]]) if order else 0.0
+    plain = -ALONE * math.log(max(len(order), 1))
+    base = level if order else nobody(differences) - math.log(found.none)
+    odds = [
+        math.exp(plain + _prior(one) + _set_anew(one, recording, streams) - base) for one in silent
+    ]
+    left = 1.0 / (1.0 + sum(odds))
+    named = [Silent(one, left * each) for one, each in zip(silent, odds, strict=True)]
+    return left, tuple(sorted(named, key=lambda one: (-one.probability, one.difference.name)))
+
+
+def _prior(one: Difference) -> float:
+    return READ_BY_NOBODY if one.state is None and not one.alike else 0.0
+
+
+def _set_anew(one: Difference, recording: Recording, streams: ResultStreams) -> float:
+    """What speaks against a parameter that was set anew while the mission ran: it is then a turn.
+
+    0 for one that was not, or if its values over time were not recorded.
+    """
+    history = ParameterValues(recording.values).history(one.parameter)
+    turns = (np.array([time_ns for time_ns, _ in history[1:]]) - streams.begin_ns) / 1e9
+    times = np.array([mark.time_ns for mark in recording.marks], np.int64)
+    marks = marked(times, tuple(mark.observer for mark in recording.marks), streams)
+    turns = turns[(turns >= 0.0) & (turns <= marks.firsts.max())]
+    if not turns.size:
+        return 0.0
+    fits = caused(turns, np.ones(turns.size), streams.seconds, marks)
+    charge = max(LEAST_CHARGE, fits - any_time(streams.seconds, marks))
+    return SET_ANEW + REPLAYED * charge

@@ -1,0 +1,127 @@
+"""Suspects that no comparison reports: what differs from a good run, and is compared nowhere."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import pytest
+from test_differences import (
+    GOOD,
+    MARKS,
+    STATIC,
+    asked,
+    flight,
+    ns,
+    recorded,
+    values,
+)
+
+import pytpc
+from pytpc.diagnosis.diagnose import diagnose_mission
+from pytpc.diagnosis.differences import RunValues, changes_of, differences
+from pytpc.diagnosis.question import Question
+from pytpc.diagnosis.results.suspects import Uncompared
+from pytpc.recording.parameter_values import SetValue
+
+
+def told(bad, *good):
+    found = differences(bad, good or [GOOD], STATIC)
+    references = [one.recording for one in good or [GOOD]]
+    asked = Question(references=references, differences=found, changes=changes_of(found))
+    return diagnose_mission(bad.recording, STATIC, asked)
+
+
+def bad_run(faces=5, recorded=(), **own):
+    kept = {"faces": faces, "coverage": 0.6, "radius": 0.17, "extra": 1}
+    flown = replace(flight(faces, marks=MARKS), values=tuple(recorded))
+    return RunValues("bad", flown, values(**{**kept, **own}))
+
+
+def odds(found):
+    return {one.parameter: one.probability for one in found.blame.suspects}
+
+
+def test_what_alone_differs_is_likeliest_and_not_blamed():
+    found = told(bad_run(radius=0.42))
+    first = found.blame.suspects[0]
+    assert isinstance(first, Uncompared)
+    assert first.parameter == "~radius"
+    assert first.probability > 0.5
+    assert found.accused is None
+    assert sum(odds(found).values()) + found.blame.none == pytest.approx(1.0)
+    assert [one.position for one in found.blame.suspects] == [1, 2, 3]
+    assert found.action == "lower ~radius from 0.42 to 0.17 (the value of the good run)"
+
+
+def test_a_comparison_that_fits_to_the_marks_goes_before():
+    found = told(bad_run(faces=12, radius=0.42))
+    assert [one.parameter for one in found.blame.suspects[:2]] == ["~faces", "~radius"]
+
+
+def test_what_no_analysed_node_reads_is_less_likely_than_what_one_reads():
+    found = odds(told(bad_run(radius=0.42, extra=2)))
+    assert found["~radius"] > 10 * found["/uav/extra"] > 0
+
+
+# ~radius has its default, as it was set under a name that nobody reads.
+def test_a_misspelt_name_is_as_likely_as_what_is_read():
+    good = replace(GOOD, values=values(faces=5, coverage=0.6, extra=1))
+    bad = bad_run(radus=0.42)
+    bad = replace(bad, values={k: v for k, v in bad.values.items() if k != "/uav/radius"})
+    found = told(bad, good)
+    assert found.blame.suspects[0].parameter == "/uav/radus"
+    assert found.advice[0].remedy.reason == "it was not set in the good run"
+
+
+# The marks are at 8 to 10 s: it was set a moment before them, or long after.
+def test_what_was_set_anew_before_the_marks_is_likelier():
+    def set_at(second):
+        history = [SetValue(0, "/uav/radius", 0.17), SetValue(ns(second), "/uav/radius", 0.42)]
+        return odds(told(bad_run(radius=0.42, recorded=history)))["~radius"]
+
+    assert set_at(3) > set_at(15) == odds(told(bad_run(radius=0.42)))["~radius"]
+
+
+# All that differs is a text: what it was is said, and there is no number to try.
+def test_a_text_is_a_suspect_without_a_value_to_try():
+    good = replace(GOOD, values=values(faces=5, coverage=0.6, radius="map", extra=1))
+    found = told(bad_run(radius="odom"), good)
+    advice = found.advice[0]
+    assert (advice.accused.parameter, advice.current) == ("~radius", "odom")
+    assert advice.remedy.value is None
+    assert advice.remedy.reason == "it was map in the good run"
+    assert found.action == ""
+
+
+def test_every_output_shows_it(tmp_path):
+    good, bad, static = recorded(tmp_path)
+    words = ("--static", static, "--reference", good)
+    answer, *_ = json.loads(asked("rank", bad, *words, "--json").stdout)
+    shown = answer["diagnosis"]["suspects"][0]
+    assert (shown["position"], shown["parameter"], shown["key"]) == (1, "~radius", None)
+    assert shown["uncompared"] == "read at src/node.cpp:5, compared nowhere"
+    assert shown["remedy"]["value"] == 0.17
+    for command in ("rank", "suggest"):
+        text = " ".join(asked(command, bad, *words).stdout.split())
+        assert "read at src/node.cpp:5, compared nowhere" in text, text
+    found = pytpc.diagnose(bad, static, reference=good)
+    assert found.rows()[0]["place"] == "read at src/node.cpp:5, compared nowhere"
+    assert "~radius" in found._repr_html_()
+    page = tmp_path / "report.html"
+    result = asked("report", bad, *words, "-o", page)
+    assert result.exit_code == 0, result.output
+    assert "~radius" in page.read_text()
+
+
+def test_fix_takes_the_value_of_the_good_run(tmp_path):
+    good, bad, static = recorded(tmp_path)
+    state = tmp_path / "fix.json"
+    result = asked("fix", bad, "--static", static, "--reference", good, "-o", state)
+    assert "~radius" in result.stdout, result.output
+    assert "0.42 -> 0.17" in result.stdout
+
+
+def test_without_a_good_run_nothing_is_added():
+    found = diagnose_mission(bad_run(radius=0.42).recording, STATIC)
+    assert [one.parameter for one in found.blame.suspects] == ["~faces", "~coverage"]
