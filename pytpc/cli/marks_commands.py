@@ -27,7 +27,9 @@ from pytpc.recording.marks import (
     is_place,
     joined,
     marks_text,
+    parse_began,
     short_note,
+    with_began,
     with_where,
 )
 from pytpc.recording.marks_file import END_PATIENCE_S, MarksFile
@@ -42,6 +44,7 @@ class _MarksArguments:
     note: str
     observer: str
     where: tuple[str, ...]
+    began: str
     remove: int | None
     as_csv: bool
     marks_files: tuple[Path, ...]
@@ -65,6 +68,12 @@ class _MarksArguments:
     help="Topic, service, action, node or frame of the added mark; may be repeated.",
 )
 @click.option(
+    "--began",
+    default="",
+    metavar="SECONDS",
+    help="When the error of the added mark began, in seconds of the mission: 40, or 40..50.",
+)
+@click.option(
     "--remove",
     type=click.IntRange(min=1),
     metavar="N",
@@ -84,12 +93,13 @@ def marks_command(given: _MarksArguments) -> None:
     recording, add, remove = given.recording, given.add, given.remove
     if add is not None and remove is not None:
         raise click.UsageError("give --add or --remove, not both")
-    if add is None and (given.note or given.observer or given.where):
-        raise click.UsageError("--note, --observer and --where need --add")
+    if add is None and (given.note or given.observer or given.where or given.began):
+        raise click.UsageError("--note, --observer, --where and --began need --add")
     note = _note_with(given.where, given.note)
     found = recording_of(recording, given.marks_files)
     marks = found.marks
     if add is not None:
+        note = _note_since(given.began, add[0], note)
         mark = _mark_to_add(found, *add, given.observer, note)
         _change(MarksFile(marks_home(recording)), MarkChange(None, mark))
         marks = joined([*marks, mark])
@@ -131,6 +141,25 @@ def _note_with(where: Sequence[str], note: str) -> str:
             param_hint="--where",
         )
     return noted
+
+
+def _note_since(began: str, at_s: float, note: str) -> str:
+    """The note that says when the error of a mark at this time began.
+
+    Raises:
+        BadParameter: it is no time of the mission up to the mark.
+    """
+    if not began:
+        return note
+    try:
+        late, early = parse_began(began)
+    except ValueError:
+        what = f"{began!r} is not like 40..50, or 40"
+        raise click.BadParameter(what, param_hint="--began") from None
+    if late > at_s:
+        what = f"{late:g} s is after the mark at {at_s:g} s"
+        raise click.BadParameter(what, param_hint="--began")
+    return with_began(note, at_s - early, at_s - late)
 
 
 def _mark_to_add(found: Recording, at_s: float, kind: str, observer: str, note: str) -> Mark:
@@ -186,7 +215,9 @@ def _marks_table(found: Recording, marks: Sequence[Mark]) -> Table:
     for heading in ("#", "Seconds"):
         table.add_column(heading, justify="right")
     has_places = any(mark.where for mark in marks)
-    for heading in ("Type", "Observer", *(["Where"] if has_places else []), "Note"):
+    has_begun = any(mark.began for mark in marks)
+    more = [*(["Began"] if has_begun else []), *(["Where"] if has_places else [])]
+    for heading in ("Type", "Observer", *more, "Note"):
         table.add_column(heading, overflow="fold")
     for number, mark in enumerate(marks, start=1):
         seconds = (mark.time_ns - found.start_ns) / 1e9
@@ -195,6 +226,7 @@ def _marks_table(found: Recording, marks: Sequence[Mark]) -> Table:
             f"{seconds:.1f}",
             mark.type or "none",
             Text(plain(mark.observer)),
+            *([_began(mark, seconds)] if has_begun else []),
             *([Text(", ".join(mark.where))] if has_places else []),
             Text(plain(short_note(mark.remark))),
         )
@@ -202,3 +234,11 @@ def _marks_table(found: Recording, marks: Sequence[Mark]) -> Table:
 
 
 COMMANDS: list[click.Command] = [marks_command]
+
+
+def _began(mark: Mark, seconds: float) -> str:
+    """``40.0 - 50.0``: from when to when its error began, in seconds of the mission."""
+    if mark.began is None:
+        return ""
+    early, late = (f"{seconds - ago:.1f}" for ago in mark.began)
+    return early if early == late else f"{early} - {late}"

@@ -229,13 +229,15 @@ def _joined(found: JoinedAdvice) -> Json:
 
 def mark_json(mark: Mark, start_ns: int) -> Json:
     """A mark; ``start_ns`` is the begin of the mission."""
+    seconds = (mark.time_ns - start_ns) / 1e9
     return {
         "time_ns": mark.time_ns,
-        "seconds": (mark.time_ns - start_ns) / 1e9,
+        "seconds": seconds,
         "type": mark.type,
         "observer": mark.observer,
         "note": mark.note,
         "where": list(mark.where),
+        "began": mark.began and [seconds - ago for ago in mark.began],
     }
 
 

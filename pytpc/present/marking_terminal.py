@@ -22,6 +22,7 @@ from pytpc.base.signals import signals_end
 from pytpc.base.wording import plain
 from pytpc.recording.graph_places import Place
 from pytpc.recording.marking_session import (
+    BEGAN_PROMPT,
     PLAYER_HELP,
     MarkChange,
     Player,
@@ -279,6 +280,8 @@ def _shown(
         said = session.said if session.typing is None else "note (Enter ends it):"
         if session.naming is not None and not said:
             said = "where (number, name or part; Enter ends it):"
+        if session.dating is not None and not said:
+            said = BEGAN_PROMPT
         if told is None:
             lines = paint(session, view, _DUMB_WIDTH, _DUMB_HEIGHT, False)
             print("\n".join(line.plain for line in lines if line.plain), flush=True)

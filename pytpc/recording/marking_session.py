@@ -15,7 +15,14 @@ from rich.cells import cell_len, set_cell_size
 
 from pytpc.base.wording import plain
 from pytpc.recording.graph_places import Naming, Place
-from pytpc.recording.marks import LONGEST_NOTE, Mark, MarkType, with_where
+from pytpc.recording.marks import (
+    LONGEST_NOTE,
+    Mark,
+    MarkType,
+    parse_began,
+    with_began,
+    with_where,
+)
 
 MEANINGS: dict[MarkType | None, str] = {
     "I": "it did something it should not have",
@@ -52,7 +59,8 @@ class Session:
     """One observer's marks, in the order in which they were made.
 
     ``typing`` is the note that is being written, or None; ``naming`` the place at which the last
-    mark was wrong, while it is being chosen. ``said`` is a message for the observer, or empty.
+    mark was wrong, while it is being chosen; ``dating`` what is typed for when its error began.
+    ``said`` is a message for the observer, or empty.
     ``used`` are all times that were marked: none is used again, even if its mark was undone.
     """
 
@@ -63,11 +71,12 @@ class Session:
     ended: bool = False
     used: frozenset[int] = frozenset()
     naming: Naming | None = None
+    dating: str | None = None
 
     @property
     def is_typing(self) -> bool:
         """Whether keys are text."""
-        return self.typing is not None or self.naming is not None
+        return self.typing is not None or self.naming is not None or self.dating is not None
 
 
 def press(
@@ -79,7 +88,7 @@ def press(
         session: what was before.
         key: a character, or ``enter``, ``backspace``, ``escape``, ``left``, ``right``, ``up``,
             ``down``, ``end`` (Ctrl-C, Ctrl-D), ``closed`` (the terminal is gone): a note is kept
-            as far as it was typed, and a place is not.
+            as far as it was typed, and a place or a time is not.
         now_ns: the time to mark; None where it is not known.
         places: the places of the graph, from which the observer chooses.
 
@@ -90,16 +99,23 @@ def press(
         change = None
         if key == "closed" and session.typing is not None:
             session, change = _type(session, session.typing, "enter")
-        return replace(session, typing=None, naming=None, ended=True), change
+        return replace(session, typing=None, naming=None, dating=None, ended=True), change
+    if session.is_typing:
+        return _answer(session, key)
+    if key in _KEYS:
+        return _mark(session, _KEYS[key], now_ns)
+    if key not in {"n", "u", "w", "b"}:
+        return session, None
+    return _look_back(session, key, places)
+
+
+def _answer(session: Session, key: str) -> tuple[Session, MarkChange | None]:
+    """A key while something about the last mark is asked."""
     if session.typing is not None:
         return _type(session, session.typing, key)
     if session.naming is not None:
         return _name(session, session.naming, key)
-    if key in _KEYS:
-        return _mark(session, _KEYS[key], now_ns)
-    if key not in {"n", "u", "w"}:
-        return session, None
-    return _look_back(session, key, places)
+    return _date(session, session.dating or "", key)
 
 
 def with_places(session: Session, places: tuple[Place, ...]) -> Session:
@@ -115,16 +131,18 @@ def with_places(session: Session, places: tuple[Place, ...]) -> Session:
 def _look_back(
     session: Session, key: str, places: tuple[Place, ...]
 ) -> tuple[Session, MarkChange | None]:
-    """Keys for the last mark: add a note or a place to it, or undo it."""
+    """Keys for the last mark: say something about it, or undo it."""
     if not session.marks:
         return replace(session, said="no mark yet"), None
     last = session.marks[-1]
     if key == "n":
         # What is typed next does not become part of a place.
-        text = f"{last.note} " if last.where and not last.remark else last.note
+        text = f"{last.note} " if last.note and not last.remark else last.note
         return replace(session, typing=text, said=""), None
     if key == "w":
         return replace(session, naming=Naming(places), said=""), None
+    if key == "b":
+        return replace(session, dating="", said=""), None
     said = f"taken back: {_named(last)}"
     return replace(session, marks=session.marks[:-1], said=said), MarkChange(last, None)
 
@@ -173,6 +191,24 @@ def _name(session: Session, naming: Naming, key: str) -> tuple[Session, MarkChan
         return left, None
     note = with_where(session.marks[-1].note, [place])
     return _noted(left, note, f"wrong at {place}")
+
+
+def _date(session: Session, text: str, key: str) -> tuple[Session, MarkChange | None]:
+    """A key while it is typed when the error began."""
+    if key == "escape" or (key == "enter" and not text.strip()):
+        return replace(session, dating=None, said=""), None
+    if key == "backspace":
+        return replace(session, dating=text[:-1], said=""), None
+    if key != "enter":
+        fits = len(key) == 1 and key.isprintable() and len(text) < LONGEST_TIME
+        return (replace(session, dating=text + key, said="") if fits else session), None
+    try:
+        early, late = parse_began(text)
+    except ValueError as error:
+        return replace(session, said=str(error)), None
+    note = with_began(session.marks[-1].note, early, late)
+    ago = f"{early:g} s" if early == late else f"{early:g} to {late:g} s"
+    return _noted(replace(session, dating=None), note, f"it began {ago} before the mark")
 
 
 def _noted(session: Session, note: str, said: str) -> tuple[Session, MarkChange]:
@@ -226,8 +262,11 @@ class Player:
 
 
 _NO_BREAK = "\N{NO-BREAK SPACE}"
-OTHER_KEYS = ("n note", "w where", "u undo", "q quit")
+OTHER_KEYS = ("n note", "w where", "b when it began", "u undo", "q quit")
 """The keys besides those that mark."""
+LONGEST_TIME = 40
+"""So many characters can be typed for when an error began."""
+BEGAN_PROMPT = "it began so many seconds before the mark (20-5, or 12):"
 MOST_CHOICES = 10
 """So many lines show places to choose from."""
 PLAYER_HELP = ("space go or stop", "arrows 5 s, 60 s", ", . 1 s", "+ - speed")
@@ -265,6 +304,9 @@ def asked(session: Session) -> list[str]:
     """The lines that ask the observer to type; none if nothing is being typed."""
     if session.naming is not None:
         prompt = f"where (number, name or part): {session.naming.typed}_"
+        return [session.said, prompt] if session.said else [prompt]
+    if session.dating is not None:
+        prompt = f"{BEGAN_PROMPT} {session.dating}_"
         return [session.said, prompt] if session.said else [prompt]
     return [] if session.typing is None else [f"note: {session.typing}_"]
 

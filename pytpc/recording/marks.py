@@ -45,6 +45,11 @@ _NAME = rf"(?:(?:~/?|/){_PART}|[A-Za-z_][A-Za-z0-9_]*)(?:/{_PART})*"
 _LONGEST_PLACE = 255
 # A whole word, of which the name is the first group.
 _PLACE = re.compile(rf"(?<!\S)@(?!\S{{{_LONGEST_PLACE + 1}}})({_NAME})[,.;:)]*(?!\S)")
+_AGO = r"-(\d{1,6}(?:\.\d{1,3})?)"
+# How many seconds before the mark the error began: @-12, or from when to when: @-20..-5.
+_BEGAN = re.compile(rf"(?<!\S)@{_AGO}(?:\.\.{_AGO})?(?!\S)", re.ASCII)
+_SECONDS = r"(\d{1,6}(?:\.\d{1,3})?)\s*s?"
+_TYPED = re.compile(rf"{_SECONDS}(?:\s*(?:-|\.\.|to)\s*{_SECONDS})?", re.ASCII)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +61,7 @@ class Mark:
     what the observer wrote about it.
 
     A word of the note that is an ``@`` and a ROS name says where the robot went wrong: it names a
-    topic, a service, an action, a node or a frame of tf.
+    topic, a service, an action, a node or a frame of tf. ``@-20..-5`` says when the error began.
     """
 
     time_ns: int
@@ -79,14 +84,30 @@ class Mark:
         return tuple(names)[:MOST_PLACES]
 
     @property
-    def remark(self) -> str:
-        """The note without the places at its beginning.
+    def began(self) -> tuple[float, float] | None:
+        """From when to when the error began, in s before the mark; None if the note does not say.
 
-        >>> Mark(1, "I", "", "@/cmd_vel @/odom too fast near @/map").remark
+        >>> Mark(1, "I", "", "@-20..-5 @/cmd_vel too fast").began
+        (20.0, 5.0)
+        >>> Mark(1, "I", "", "@-12 too fast").began
+        (12.0, 12.0)
+        """
+        found = _BEGAN.search(self.note)
+        if found is None:
+            return None
+        first = float(found[1])
+        last = first if found[2] is None else float(found[2])
+        return (max(first, last), min(first, last))
+
+    @property
+    def remark(self) -> str:
+        """The note without the places and the time at its beginning.
+
+        >>> Mark(1, "I", "", "@-20..-5 @/cmd_vel @/odom too fast near @/map").remark
         'too fast near @/map'
         """
         text = self.note.strip()
-        while found := _PLACE.match(text):
+        while found := _PLACE.match(text) or _BEGAN.match(text):
             text = text[found.end() :].lstrip()
         return text
 
@@ -103,20 +124,57 @@ def is_place(name: str) -> bool:
 def with_where(note: str, where: Iterable[str]) -> str:
     """The note with these places before its text, and no others; at most ``LONGEST_NOTE`` long.
 
-    Places that it began with are gone. One within the text stays there as a mere name.
+    When the error began stays before them. Places that the note began with are gone. One within the
+    text stays there as a mere name.
 
     >>> with_where("@/odom too fast near @/map.", ["/cmd_vel", "~state"])
     '@/cmd_vel @~state too fast near /map.'
     >>> with_where("@/odom too fast", [])
     'too fast'
     """
-    before = ""
+    began = _BEGAN.search(note)
+    before = "" if began is None else f"{began[0]} "
     for name in tuple(dict.fromkeys(where))[:MOST_PLACES]:
         if len(before) + len(name) + 1 <= LONGEST_NOTE:
             before += f"@{name} "
+    text = _PLACE.sub(lambda found: found[0][1:], Mark(0, None, "", note).remark)
+    return _after(before, _BEGAN.sub("", text))
+
+
+def with_began(note: str, early_s: float, late_s: float) -> str:
+    """The note that says when the error began, in s before the mark; at most ``LONGEST_NOTE`` long.
+
+    >>> with_began("@-3 @/odom too fast", 20, 5)
+    '@-20..-5 @/odom too fast'
+    >>> with_began("", 12.04, 12.04)
+    '@-12'
+    """
+    first, last = (f"{max(0.0, one):.1f}".removesuffix(".0") for one in (early_s, late_s))
+    word = f"@-{first}" if first == last else f"@-{first}..-{last}"
+    return _after(f"{word} ", _BEGAN.sub("", note).strip())
+
+
+def _after(before: str, text: str) -> str:
+    """A note of these words and a text, which is cut to what is left for it."""
     room = LONGEST_NOTE - len(before)
-    text = short_note(Mark(0, None, "", note).remark, room) if room > len("...") else ""
-    return (before + _PLACE.sub(lambda found: found[0][1:], text)).rstrip()
+    return (before + (short_note(text, room) if room > len("...") else "")).rstrip()
+
+
+def parse_began(text: str) -> tuple[float, float]:
+    """What somebody types for when an error began: ``20-5``, ``20..5`` or ``12``.
+
+    Returns:
+        The earlier and the later end, as they are counted: the larger number first.
+
+    Raises:
+        ValueError: it is neither; the message says what is expected.
+    """
+    found = _TYPED.fullmatch(text.strip())
+    if found is None:
+        raise ValueError(f"{text.strip()!r} is not like 20-5, or 12")
+    first = float(found[1])
+    last = first if found[2] is None else float(found[2])
+    return (max(first, last), min(first, last))
 
 
 def topic_of_marks(topic: str) -> tuple[MarkType | None, str] | None:
@@ -143,7 +201,8 @@ def topic_of_observer(observer: str, last: str) -> str:
 def joined(marks: Iterable[Mark]) -> tuple[Mark, ...]:
     """``marks`` sorted, each once.
 
-    Of two that differ in their notes alone, it is the one that says where, or else has a note.
+    Of two that differ in their notes alone, it is the one that says where and when, or else has a
+    note.
     """
     found: dict[tuple[int, str, str], Mark] = {}
     for mark in marks:
@@ -153,8 +212,8 @@ def joined(marks: Iterable[Mark]) -> tuple[Mark, ...]:
     return tuple(sorted(found.values(), key=Mark.order))
 
 
-def _says(mark: Mark) -> tuple[bool, str]:
-    return (bool(mark.where), mark.note)
+def _says(mark: Mark) -> tuple[int, str]:
+    return (bool(mark.where) + bool(mark.began), mark.note)
 
 
 def marks_between(marks: Iterable[Mark], start_ns: int, end_ns: int) -> list[Mark]:

@@ -433,7 +433,7 @@ def test_marks_are_listed(files):
         ["2", "19.0", "II"],
     ]
     first = {"time_ns": ns(16), "seconds": 15.0, "type": "I", "observer": "", "note": ""}
-    first["where"] = []
+    first |= {"where": [], "began": None}
     assert json.loads(run("marks", bag, "--json").stdout)[0] == first
     assert run("marks", bag, "--csv").stdout == (
         f"time_ns,type,observer,note\n{ns(16)},I,,\n{ns(20)},II,,\n"
@@ -472,7 +472,9 @@ def test_what_cannot_be_added_or_removed(files):
         (["--add", "nan", "I"], "outside of the mission"),
         (["--add", "1", "III"], "'III' is not one of"),
         (["--add", "1", "I", "--remove", "1"], "give --add or --remove"),
-        (["--note", "x"], "--note, --observer and --where need --add"),
+        (["--note", "x"], "--note, --observer, --where and --began need --add"),
+        (["--add", "1", "I", "--began", "soon"], "'soon' is not like 40..50, or 40"),
+        (["--add", "1", "I", "--began", "0..2"], "2 s is after the mark at 1 s"),
         (["--add", "1", "I", "--where", "/a b"], "'/a b' is not a ROS name"),
         (["--add", "1", "I", *(f"--where=/t{n}" for n in range(9))], "at most 8 places"),
     ):
@@ -496,6 +498,21 @@ def test_places_are_added_with_a_mark_and_listed(quiet):
         ("", []),
         ("@/cmd_vel @~state no picture", ["/cmd_vel", "~state"]),
     ]
+
+
+def test_a_mark_is_added_that_says_when_its_error_began(quiet):
+    run("marks", quiet, "--add", "15", "II", "--began", "2.5..5", "--where", "/odom")
+    run("marks", quiet, "--add", "16", "I", "--began", "7")
+    run("marks", quiet, "--add", "17", "I")
+    assert [row.split() for row in run("marks", quiet).stdout.splitlines()] == [
+        ["#", "Seconds", "Type", "Observer", "Began", "Where", "Note"],
+        ["1", "15.0", "II", "2.5", "-", "5.0", "/odom"],
+        ["2", "16.0", "I", "7.0"],
+        ["3", "17.0", "I"],
+    ]
+    said = json.loads(run("marks", quiet, "--json").stdout)
+    assert [mark["began"] for mark in said] == [[2.5, 5.0], [7.0, 7.0], None]
+    assert said[0]["note"] == "@-12.5..-10 @/odom"
 
 
 def test_a_note_keeps_its_own_places_with_those_that_are_added(quiet):

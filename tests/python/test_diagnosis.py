@@ -24,6 +24,7 @@ from pytpc.diagnosis.ranking.mark_evidence import (
     SHARE,
     STRAY,
     MarkEvidence,
+    Wait,
     mark_evidence,
     marked,
     reaction,
@@ -242,7 +243,7 @@ def test_what_an_observer_says_first_counts_most():
 # 0.7676, below 3 s (late by 30 s) 0.2545: 0.775 F + 0.15 * 0.7676 + 0.075 * 0.2545 = 0.8101.
 def test_acted_by_hand():
     streams = ResultStreams.of(events(gate_case()), Tpcs.of(STATIC))
-    found = mark_evidence(streams, marked(np.array([ns(33)]), ("",), streams))
+    found = mark_evidence(streams, marked([Mark(ns(33), None)], streams))
     f = STRAY + (1 - STRAY) * 79.53 * reaction(np.array([3.0, 33.0]))
     chance = STRAY + (1 - STRAY) * 79.53 / 33 * 0.8101
     expected = math.log((0.3 * f[0] + 0.015 * f[1]) / 0.615) - math.log(chance)
@@ -260,7 +261,7 @@ def test_what_is_evaluated_once_may_have_passed_at_once():
     for length in (0.1, 1.0):
         own = [(30 + t * length / 5, 0, 1, 1, 2) for t in range(6)]
         streams = ResultStreams.of(events(rows + own), Tpcs.of(STATIC))
-        found = mark_evidence(streams, marked(np.array([ns(33)]), ("",), streams))
+        found = mark_evidence(streams, marked([Mark(ns(33), None)], streams))
         weighed.append(math.exp(found.acted[0]))
     assert weighed[0] / weighed[1] == pytest.approx((0.32 / 0.62) / (0.04 / 0.34))
     chance = STRAY + (1 - STRAY) * 79.5 / 33 * 0.8101
@@ -270,7 +271,9 @@ def test_what_is_evaluated_once_may_have_passed_at_once():
 def test_a_comparison_that_changes_all_the_time_is_as_good_as_chance():
     rows = [(t / 2, 0, t % 4 < 2, t % 4, 2) for t in range(160)]
     streams = ResultStreams.of(events(rows), Tpcs.of(STATIC))
-    own = marked(np.array([ns(40), ns(42), ns(45)]), ("a", "b", "c"), streams)
+    own = marked(
+        [Mark(ns(at), None, who) for at, who in ((40, "a"), (42, "b"), (45, "c"))], streams
+    )
     assert abs(mark_evidence(streams, own).acted[0]) < 0.3
 
 
@@ -280,7 +283,7 @@ def test_a_comparison_that_changes_all_the_time_is_as_good_as_chance():
 # to 79.5 s: 7 + 99 evaluations of half a second.
 def test_waited_by_hand():
     streams = ResultStreams.of(events(wait_case()), Tpcs.of(STATIC))
-    found = mark_evidence(streams, marked(np.array([ns(30)]), ("",), streams))
+    found = mark_evidence(streams, marked([Mark(ns(30), None)], streams))
     elsewhere = 106 * 0.5 / (79.53 - 8)
     assert found.held[0] == 1.0
     assert found.waited[0] == pytest.approx(math.log((1 + SHARE) / (elsewhere + SHARE)), abs=1e-3)
@@ -300,7 +303,7 @@ def test_a_break_ends_a_wait_and_a_short_one_does_not():
     ]
     streams = ResultStreams.of(events(rows), Tpcs.of(STATIC))
     found = [
-        mark_evidence(streams, marked(np.array([ns(m)]), ("",), streams)).since[0]
+        mark_evidence(streams, marked([Mark(ns(m), None)], streams)).since[0]
         for m in (50, 48.5, 47)
     ]
     fits = 79.9 * reaction(np.array([1.0, 47.0]), PATIENCE_LOG, PATIENCE_SIGMA)
@@ -311,9 +314,35 @@ def test_a_break_ends_a_wait_and_a_short_one_does_not():
 
 def test_only_the_first_mark_of_an_observer_tells_when_it_began():
     streams = ResultStreams.of(events(gate_case()), Tpcs.of(STATIC))
-    found = marked(np.array([ns(40), ns(33), ns(50)]), ("a", "a", "b"), streams)
+    found = marked(
+        [Mark(ns(at), None, who) for at, who in ((40, "a"), (33, "a"), (50, "b"))], streams
+    )
     assert found.times.tolist() == [40, 33, 50]
     assert found.firsts.tolist() == [33, 50]
+
+
+# It began 20 to 10 s before the mark at 60 s: from 40 to 50. The density is 0.9 / (10 + 3 + 0.5)
+# there, falls by e for each 3 s before 40 and each 0.5 s after 50, and a tenth of it is ordinary.
+def test_when_it_began_is_nearer_to_its_cause_than_the_mark():
+    streams = ResultStreams.of(events(gate_case()), Tpcs.of(STATIC))
+    marks = marked([Mark(ns(60), None, "a", "@-20..-10"), Mark(ns(61), None, "b")], streams)
+    assert marks.begins[0].tolist() == [40, 50]
+    causes = np.array([45.0, 37.0, 51.0])
+    found = marks.fits(causes[:, None], 1.946, 1.17)
+    told = 0.9 / 13.5 * np.exp([0.0, -1.0, -2.0])
+    assert found[:, 0] == pytest.approx(told + 0.1 * reaction(60 - causes))
+    assert found[:, 1] == pytest.approx(reaction(61 - causes))
+
+
+# The wait of a mark that says so begins in the middle of it, and ends with the mark at the latest.
+def test_the_wait_is_where_the_error_began():
+    streams = ResultStreams.of(events(gate_case()), Tpcs.of(STATIC))
+    late = [Mark(ns(60), "II", "a", "@-20..-10"), Mark(ns(50), "II", "a", "@-3..-1")]
+    wait = Wait.before(marked(late, streams), streams.seconds)
+    assert wait.begins.tolist() == pytest.approx([45])
+    assert wait.ends.tolist() == pytest.approx([53])
+    one = Wait.before(marked(late[1:], streams), streams.seconds)
+    assert (one.begins.tolist(), one.ends.tolist()) == ([48], [50])
 
 
 def test_what_is_as_it_was_is_hardly_to_blame():

@@ -124,6 +124,37 @@ def test_without_a_mark_there_is_no_place():
     assert (session.naming, session.said) == (None, "no mark yet")
 
 
+def test_the_last_mark_gets_the_time_at_which_it_began():
+    session, changes = typed("1", "b", *"20x", "backspace", *"-5", "enter")
+    assert session.marks == (at(1, "I", "@-20..-5"),)
+    assert changes[1:] == [MarkChange(at(1, "I"), at(1, "I", "@-20..-5"))]
+    assert (session.dating, session.said) == (None, "it began 20 to 5 s before the mark")
+    session, _ = typed("1", "b", "7", "enter", "n", "h", "i", "enter")
+    assert session.marks == (at(1, "I", "@-7 hi"),)
+
+
+def test_what_is_no_time_is_said_and_can_be_mended():
+    session, changes = typed("1", "b", "w", "enter")
+    assert (session.said, len(changes)) == ("'w' is not like 20-5, or 12", 1)
+    for key in ("left", "backspace", "8", "enter"):
+        session, _ = press(session, key, 0)
+    assert session.marks == (at(1, "I", "@-8"),)
+
+
+@pytest.mark.parametrize("leave", ["escape", "enter", "end", "closed"])
+def test_a_time_that_is_not_taken_is_not_said(leave: str):
+    keys = [leave] if leave == "enter" else ["8", leave]
+    session, changes = typed("1", "b", *keys)
+    assert (session.marks, session.dating, len(changes)) == ((at(1, "I"),), None, 1)
+
+
+def test_the_screen_asks_when_it_began():
+    session = Session("ana", (at(101, "I"),), dating="20")
+    prompt = "it began so many seconds before the mark (20-5, or 12): 20_"
+    assert screen(session, VIEW, 80, 24)[-1] == prompt
+    assert screen(replace(session, said="no"), VIEW, 80, 24)[-2:] == ["no", prompt]
+
+
 # What Enter would have taken, nobody has said.
 def test_a_place_that_is_interrupted_is_not_named():
     for key in ("end", "closed"):
@@ -223,7 +254,7 @@ def test_the_screen():
         "1 it did something it should not have",
         "2 it should be doing something",
         "3 something is wrong",
-        "n note  w where  u undo  q quit  space go or stop",
+        "n note  w where  b when it began  u undo  q quit  space go or stop",
         "2 marks:",
         "   0:01.0  I",
         "   0:03.2  -   it \N{REPLACEMENT CHARACTER}[31mturned",

@@ -20,10 +20,12 @@ from pytpc.recording.marks import (
     marks_beside,
     marks_text,
     note_text,
+    parse_began,
     parse_note,
     read_marks,
     topic_for,
     topic_of_marks,
+    with_began,
     with_where,
     write_marks,
 )
@@ -140,6 +142,44 @@ def test_a_note_with_places_has_these(note: str, names: list[str]):
     assert where(made) == tuple(dict.fromkeys(names))
     assert len(made) <= LONGEST_NOTE
     assert with_where(made, names) == made
+
+
+@pytest.mark.parametrize(
+    ("note", "began"),
+    [
+        ("@-20..-5 too fast", (20.0, 5.0)),
+        ("@/cmd_vel @-12.5 slow", (12.5, 12.5)),
+        ("from @-3..-8", (8.0, 3.0)),
+        # Not a word of its own, and no number of seconds.
+        ("x@-20 @-20..5 @-1..-2..-3 @-1e3 @-٣ @20", None),
+        ("@-1234567", None),
+    ],
+)
+def test_when_an_error_began(note: str, began: tuple[float, float] | None):
+    assert Mark(1, "I", "", note).began == began
+
+
+@pytest.mark.parametrize(
+    ("text", "began"),
+    [("20-5", (20, 5)), ("5..20", (20, 5)), (" 12 s ", (12, 12)), ("3.5 to 4 s", (4, 3.5))],
+)
+def test_what_is_typed_for_it(text: str, began: tuple[float, float]):
+    assert parse_began(text) == began
+
+
+@pytest.mark.parametrize("text", ["", "soon", "-5", "1-2-3", "1e3", "20-"])
+def test_what_is_no_time_is_refused(text: str):
+    with pytest.raises(ValueError, match="is not like 20-5, or 12"):
+        parse_began(text)
+
+
+def test_place_and_time_do_not_replace_one_another():
+    note = with_began("@/odom drifts", 20, 5)
+    assert note == "@-20..-5 @/odom drifts"
+    assert with_where(note, ["/tf"]) == "@-20..-5 @/tf drifts"
+    assert with_began(note, 12, 12) == "@-12 @/odom drifts"
+    assert Mark(1, "I", "", note).remark == "drifts"
+    assert len(with_began("x" * 600, 20, 5)) == LONGEST_NOTE
 
 
 # The bag has the note of before, and the file beside it that with the place.

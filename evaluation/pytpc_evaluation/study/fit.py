@@ -138,7 +138,7 @@ def samples(mission: Mission) -> list[Sample]:
     for who in (ALL, *users):
         own = [mark for mark in mission.marks if who in {ALL, mark.observer}]
         times = np.array([mark.time_ns for mark in own], np.int64)
-        observed = marked(times, tuple(m.observer for m in own), streams)
+        observed = marked([mark.mark("untyped") for mark in own], streams)
         found = mark_evidence(streams, observed)
         baseline = ranked(mission.recording, tpcs, times)
         share = (1.0 if who == ALL else ALONE / len(users)) / len(LABELS)

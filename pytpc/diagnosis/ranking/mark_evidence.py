@@ -35,6 +35,7 @@ import numpy as np
 from pytpc.base.columns import Bools, Floats, Int64s
 from pytpc.diagnosis.ranking.other_nodes import Reached, effects
 from pytpc.diagnosis.ranking.result_streams import CASCADE_S, ResultStream, ResultStreams
+from pytpc.recording.marks import Mark
 
 REACTION_LOG = 1.946
 """Mean of the logarithms of table 6.14's seven delays of type I: a median of 7 s."""
@@ -99,14 +100,45 @@ OTHERS = 0.3
 """Added to the sum of the turns' weights: turns without any effect are unlikely causes."""
 
 
+TOLD = 0.9
+"""How far an observer is believed who says when the error began; else it is an ordinary mark."""
+
+LEAD_S, LAG_S = 3.0, 0.5
+"""A cause may come that much (the mean of an exponential) before the span in which somebody saw the
+error begin, or after it, as they are not exact. In the study's tuning half, with marks 30 s late, a
+span of 10 s that holds the begin in nine of ten cases lifts the log alone from 32 to 69 % in the
+first place, and two good runs from 60 to 85 %; marks in time gain 0 to 10."""
+
+
 class Marked(NamedTuple):
     """The marks in seconds from the begin of the log: all, and the first of each observer.
 
     An observer's later marks say that the error lasts, and nothing more of when it began.
+    ``waits`` float64[marks] is when the wait before each mark begins; ``begins`` float64[firsts, 2]
+    from when to when the error of a first mark began, as the observer says; nan where nobody does.
     """
 
     times: Floats
     firsts: Floats
+    waits: Floats
+    begins: Floats
+
+    def fits(self, causes: Floats, mean: float, sigma: float) -> Floats:
+        """How well each first mark fits to causes at these times: its density, per second.
+
+        Args:
+            causes: float64[..., firsts] or float64[n, 1], in s.
+            mean: of the logarithm of the time from a cause to a mark.
+            sigma: its standard deviation.
+        """
+        density = reaction(self.firsts - causes, mean, sigma)
+        told = ~np.isnan(self.begins[:, 0])
+        if told.any():
+            low, high = self.begins.T
+            away = np.where(causes < low, (low - causes) / LEAD_S, (causes - high) / LAG_S)
+            near = np.exp(-np.maximum(away, 0.0)) / (high - low + LEAD_S + LAG_S)
+            density = np.where(told, TOLD * near + (1.0 - TOLD) * density, density)
+        return density
 
 
 @dataclass(frozen=True)
@@ -126,13 +158,18 @@ class MarkEvidence:
     flat: Floats
 
 
-def marked(times_ns: Int64s, observers: Sequence[str], streams: ResultStreams) -> Marked:
-    """The marks on the clock of the streams."""
-    times = (times_ns - streams.begin_ns) / 1e9
-    firsts: dict[str, float] = {}
-    for time, observer in zip(times.tolist(), observers, strict=True):
-        firsts[observer] = min(time, firsts.get(observer, np.inf))
-    return Marked(times, np.sort(np.array([*firsts.values()], np.float64)))
+def marked(marks: Sequence[Mark], streams: ResultStreams) -> Marked:
+    """The marks, at least one, on the clock of the streams."""
+    times = np.array([(mark.time_ns - streams.begin_ns) / 1e9 for mark in marks])
+    ago = np.array([mark.began or (np.nan, np.nan) for mark in marks])
+    begins = times[:, None] - ago
+    middle = begins.mean(axis=1)
+    waits = np.where(np.isnan(middle), times - WAIT_S, middle)
+    firsts: dict[str, int] = {}
+    for place in np.argsort(times, kind="stable").tolist():
+        firsts.setdefault(marks[place].observer, place)
+    own = [*firsts.values()]
+    return Marked(times, times[own], waits, begins[own])
 
 
 def mark_evidence(
@@ -215,7 +252,7 @@ def caused(turns: Floats, weights: Floats, seconds: float, marks: Marked) -> flo
 
 def _fits(turns: Floats, seconds: float, marks: Marked) -> Floats:
     """How well each turn explains the first marks, as logarithms."""
-    times = max(seconds, 1.0) * reaction(marks.firsts[None, :] - turns[:, None])
+    times = max(seconds, 1.0) * marks.fits(turns[:, None], REACTION_LOG, REACTION_SIGMA)
     return np.asarray(np.log(STRAY + (1 - STRAY) * times).sum(axis=1))
 
 
@@ -246,9 +283,10 @@ class Wait(NamedTuple):
 
     @classmethod
     def before(cls, marks: Marked, seconds: float) -> Wait:
-        """The ``WAIT_S`` before each mark."""
-        begins = np.sort(marks.times) - WAIT_S
-        ends = begins + WAIT_S
+        """The ``WAIT_S`` before each mark, or after the error began, if the observer says when."""
+        order = np.argsort(marks.waits, kind="stable")
+        begins = marks.waits[order]
+        ends = np.maximum.accumulate(np.minimum(begins + WAIT_S, marks.times[order]))
         new = np.concatenate([[True], begins[1:] > ends[:-1]])
         joined = np.flatnonzero(new)
         return cls(begins[joined], ends[np.append(joined[1:], begins.size) - 1], seconds)
@@ -304,7 +342,7 @@ def _since(times: Floats, seconds: float, marks: Marked) -> float:
     begins = np.flatnonzero(np.diff(times, prepend=-np.inf) > BRIEF_S)
     last = np.searchsorted(times, firsts, side="right") - 1
     begun = times[begins[np.maximum(np.searchsorted(begins, last, side="right") - 1, 0)]]
-    fits = max(seconds, 1.0) * reaction(firsts - begun, PATIENCE_LOG, PATIENCE_SIGMA)
+    fits = max(seconds, 1.0) * marks.fits(begun, PATIENCE_LOG, PATIENCE_SIGMA)
     fits[(last < 0) | (firsts - times[last] > BRIEF_S)] = 0.0
     return float(np.log(STRAY + (1 - STRAY) * fits).sum())
 

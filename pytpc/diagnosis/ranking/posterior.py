@@ -130,7 +130,7 @@ def diagnose_log(
         nothing = (None,) * len(tpcs.names)
         return Posterior(tpcs.names, nobody, np.zeros(len(tpcs.names)), 1.0, 0.5, nothing)
     times = np.array([mark.time_ns for mark in marks], np.int64)
-    observed = marked(times, tuple(mark.observer for mark in marks), streams)
+    observed = marked(marks, streams)
     others = OtherNodes.of(streams, tpcs, static_info, recording.wiring)
     found = mark_evidence(streams, observed, None if others is None else others.reached)
     places = np.array([stream.column for stream in streams.streams])

@@ -67,8 +67,7 @@ def replayed(
     """
     tpcs = Tpcs.of(static_info)
     streams = ResultStreams.of(with_summarised(recording), tpcs)
-    times = np.array([mark.time_ns for mark in recording.marks], np.int64)
-    marks = marked(times, tuple(mark.observer for mark in recording.marks), streams)
+    marks = marked(recording.marks, streams)
     odds = type_odds(recording.marks)
     wait = Wait.before(marks, streams.seconds)
     found: dict[str, float] = {}

@@ -78,8 +78,7 @@ def _set_anew(one: Difference, recording: Recording, streams: ResultStreams) -> 
     """
     history = ParameterValues(recording.values).history(one.parameter)
     turns = (np.array([time_ns for time_ns, _ in history[1:]]) - streams.begin_ns) / 1e9
-    times = np.array([mark.time_ns for mark in recording.marks], np.int64)
-    marks = marked(times, tuple(mark.observer for mark in recording.marks), streams)
+    marks = marked(recording.marks, streams)
     turns = turns[(turns >= 0.0) & (turns <= marks.firsts.max())]
     if not turns.size:
         return 0.0
