@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 from collections import Counter
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import pytest
@@ -16,14 +16,17 @@ from study_samples import Row, write_rows
 
 from pytpc.base.errors import InputError
 from pytpc_evaluation.commands.study_commands import study_group
-from pytpc_evaluation.study.dataset import Done, save_done
+from pytpc_evaluation.study.data import Mission, UserMark, load_mission
+from pytpc_evaluation.study.dataset import Cause, Done, save_done
 from pytpc_evaluation.study.judge import POSITIONS_FILE
+from pytpc_evaluation.study.other_marks import SPAN_S, VARIANTS, other_marks
 from pytpc_evaluation.study.people import look_on
 from pytpc_evaluation.study.report import sensitivity
 from pytpc_evaluation.study.report.judging import by_own_marks
 from pytpc_evaluation.study.report.making import ReportOptions, make_report
 from pytpc_evaluation.study.report.positions import Position, read_positions
 from pytpc_evaluation.study.report.sensitivity import (
+    ALONE_METHODS,
     CROWDS,
     PROGRAM,
     SENSITIVITY_FILE,
@@ -83,11 +86,45 @@ def asked(monkeypatch) -> list[str]:
 def test_every_crowd_is_ranked_by_each_method(looked_at):
     rows = rows_in(looked_at)
     assert {(row.treatment, row.seed) for row in rows} == TUNING
-    each = Counter((row.treatment, row.seed, row.who, row.method) for row in rows)
+    of_crowds = [row for row in rows if row.who in CROWDS]
+    each = Counter((row.treatment, row.seed, row.who, row.method) for row in of_crowds)
     assert each == {
         (*m, crowd, method): 2 for m in TUNING for crowd in CROWDS for method in METHODS
     }
-    assert {row.labels for row in rows} == {"typed", "confused"}
+    assert {row.labels for row in of_crowds} == {"typed", "confused"}
+
+
+def test_each_observer_is_ranked_alone_by_other_marks(looked_at):
+    alone = [row for row in rows_in(looked_at) if row.who not in CROWDS]
+    assert {row.who for row in alone} == {*VARIANTS}
+    assert {row.labels for row in alone} == {"confused"}
+    assert {row.method for row in alone} == {*ALONE_METHODS}
+    observers = {mark.observer for mark in first_mission(looked_at).marks}
+    own = [r for r in alone if (r.treatment, r.seed, r.method) == ("type1_low", 1, "tpc")]
+    assert Counter(row.who for row in own) == dict.fromkeys(VARIANTS, len(observers))
+
+
+def first_mission(folder: Path) -> Mission:
+    return load_mission(folder, folder / "missions/alpha/type1_low/seed-1", "tuning")
+
+
+# Marks at 9 and 14 s of an error that was seen from 6 s on.
+def test_other_marks_are_made_of_those_that_were_set(looked_at):
+    own = [UserMark(at * 10**9, "a", 0, "I", "II") for at in (9, 14)]
+    mission = replace(
+        first_mission(looked_at), marks=tuple(own), causes=(Cause("I", 6.0, 6.0, "it was wrong"),)
+    )
+    made = {name: other_marks(mission, name)[0].marks for name in VARIANTS}
+    assert made["own"] == tuple(own)
+    assert (made["first"], made["last"]) == ((own[0],), (own[1],))
+    assert [(mark.right, mark.said) for mark in made["wrong-types"]] == [("II", "I")] * 2
+    # The mission takes 20 s.
+    assert made["late-30"] == ()
+    assert [mark.time_ns for mark in made["late-15"]] == []
+    for mark, told in zip(own, made["own-began"], strict=True):
+        early, late = told.mark("confused").began
+        assert early - late <= SPAN_S
+        assert told.mark("confused").time_ns == mark.time_ns
 
 
 # ~low alone has flopped before any mark, so whoever believes that it is of type I puts it first.

@@ -43,18 +43,22 @@ MISSIONS = "missions"
 
 @dataclass(frozen=True)
 class UserMark:
-    """A row of ``marks.parquet``: the visible kind of the error, and the type that was said."""
+    """A row of ``marks.parquet``: the visible kind of the error, and the type that was said.
+
+    ``note`` is what else the observer said; the study's own say nothing.
+    """
 
     time_ns: int
     observer: str
     cause: int
     right: MarkType
     said: MarkType
+    note: str = ""
 
     def mark(self, labels: Labels, where: str = "") -> Mark:
         """The mark as a method gets it; ``where`` is what the observer says of the place."""
         types: dict[Labels, MarkType | None] = {"typed": self.right, "confused": self.said}
-        note = with_where("", [where] if where else [])
+        note = with_where(self.note, [where] if where else [])
         return Mark(self.time_ns, types.get(labels), self.observer, note)
 
 

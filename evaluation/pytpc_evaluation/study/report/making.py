@@ -35,7 +35,7 @@ from pytpc_evaluation.study.report.judged import (
 from pytpc_evaluation.study.report.judging import by_own_marks
 from pytpc_evaluation.study.report.observer import observer_table
 from pytpc_evaluation.study.report.original import Original
-from pytpc_evaluation.study.report.other_people import others_table, parts_with_others
+from pytpc_evaluation.study.report.other_people import marks_table, others_table, parts_with_others
 from pytpc_evaluation.study.report.page import BESIDE, IMAGES, Contents, page, tables_page
 from pytpc_evaluation.study.report.parts import Part, parts_of
 from pytpc_evaluation.study.report.positions import Position, read_positions
@@ -279,7 +279,11 @@ def _tables(
         *(against_table(positions, part) for part in parts),
         *(users_table(positions, part) for part in parts),
         *(observer_table(positions, part) for part in parts),
-        *(others_table(results.others, p) for p in parts_with_others(results.others, parts)),
+        *(
+            made(results.others, part)
+            for part in parts_with_others(results.others, parts)
+            for made in (others_table, marks_table)
+        ),
         *(positions_table(positions, labels) for labels in LABELS),
         *(
             reliability_table(calibration(positions, half, method), half, method)

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from pytpc_evaluation.study.data import LABELS
+from pytpc_evaluation.study.metrics import exact_share
+from pytpc_evaluation.study.other_marks import VARIANTS
 from pytpc_evaluation.study.report.parts import Part
 from pytpc_evaluation.study.report.positions import Position, ordered
 from pytpc_evaluation.study.report.ranked import METHODS, TARGET_PLACES, percent, top
-from pytpc_evaluation.study.report.sensitivity import CROWDS
+from pytpc_evaluation.study.report.sensitivity import ALONE_METHODS, CROWDS
 from pytpc_evaluation.tables import Cell, Column, Table
 
 _WORDS: Mapping[str, str] = {
@@ -29,7 +31,7 @@ def parts_with_others(rows: Sequence[Position], parts: Sequence[Part]) -> list[P
 
 def others_table(rows: Sequence[Position], part: Part) -> Table:
     """Top 3 by crowd and labels, of one part; ``who`` of a row is the crowd."""
-    own = _of(rows, part)
+    own = [row for row in _of(rows, part) if row.who in CROWDS]
     methods = ordered((row.method for row in own), METHODS)
     columns = (
         Column("Labels", 0),
@@ -53,6 +55,32 @@ def others_table(rows: Sequence[Position], part: Part) -> Table:
             lines.append((words, (labels, count, marks, *map(percent, shares))))
     title = f"Top 3 in % by other people's marks, the {part.title}"
     return Table(f"others-{part.name}", title, columns, tuple(lines), (), "People")
+
+
+def marks_table(rows: Sequence[Position], part: Part) -> Table:
+    """Top 1 and top 3 of one observer by what is different about the marks, of one part.
+
+    Missions in which nothing was marked, or everything after their end, are left out.
+    """
+    own = [row for row in _of(rows, part) if row.who in VARIANTS and row.marks]
+    columns = [Column("Treatments", 0)]
+    for method in ALONE_METHODS:
+        columns += [Column(f"{method}, top 1 %", 0), Column(f"{method}, top 3 %", 0)]
+    lines: list[tuple[str, tuple[Cell, ...]]] = []
+    for variant in ordered((row.who for row in own), tuple(VARIANTS)):
+        here = [row for row in own if row.who == variant]
+        shares = [
+            exact_share(
+                [row.within(k) for row in here if row.method == method],
+                [(row.system, row.treatment) for row in here if row.method == method],
+            )
+            for method in ALONE_METHODS
+            for k in (1, TARGET_PLACES)
+        ]
+        words, _ = VARIANTS[variant]
+        lines.append((words, (shares[0].treatments, *map(percent, shares))))
+    title = f"One observer's other marks, the {part.title}"
+    return Table(f"other-marks-{part.name}", title, tuple(columns), tuple(lines), (), "Marks")
 
 
 def _of(rows: Sequence[Position], part: Part) -> list[Position]:

@@ -2,9 +2,11 @@
 
 The study's observers draw their delays and numbers of marks from tables 6.14 and 6.15 of the
 thesis, and the ranking takes its constants from the same tables. Here the missions are marked by
-people who are faster, slower, alone and so on, and ranked by those marks. The verdicts stand in
-``results/sensitivity.parquet``. Its rows are those of ``results/positions.parquet``, with the
-crowd as ``who``.
+people who are faster, slower, alone and so on, and ranked by those marks. So they are by marks of
+one of the study's own observers that come late, are few, or say more
+(`pytpc_evaluation.study.other_marks`). The verdicts stand in ``results/sensitivity.parquet``. Its
+rows are those of ``results/positions.parquet``, with the crowd as ``who``, or with what is
+different about the marks; then there is a row for each observer.
 """
 
 from __future__ import annotations
@@ -26,6 +28,7 @@ from pytpc_evaluation.study.dataset import CAUSES_FILE, DONE_FILE, SIGHTS_FILE, 
 from pytpc_evaluation.study.digest import people_digest
 from pytpc_evaluation.study.judge import SCHEMA, Judged, judge
 from pytpc_evaluation.study.methods import METHODS
+from pytpc_evaluation.study.other_marks import VARIANTS, other_marks
 from pytpc_evaluation.study.people import look_on
 from pytpc_evaluation.study.report.judging import Ranking
 from pytpc_evaluation.study.verdict_digest import contents, digest_of, mission_digest
@@ -35,12 +38,14 @@ PROGRAM = SHARED_PACKAGE.parent / "other_people" / "crowds.py"
 CROWDS = ("thesis", "fast", "slow", "spread", "two-marks", "alone", "coin")
 """The files that the program writes; the first is of the mission's own people."""
 _METHODS = ("tpc", "tpc+reference", "thesis")
+ALONE_METHODS = ("tpc", "tpc+2-runs")
+"""The methods that judge one observer's marks."""
 _LABELS: tuple[Labels, ...] = ("typed", "confused")
 
 
 def by_others() -> Ranking:
     """``results/sensitivity.parquet``: some methods, by the marks of other people."""
-    methods = {name: METHODS[name] for name in _METHODS}
+    methods = {name: METHODS[name] for name in dict.fromkeys((*_METHODS, *ALONE_METHODS))}
     return Ranking(SENSITIVITY_FILE, methods, inputs_digest, judge_by_others, save_sensitivity)
 
 
@@ -59,7 +64,7 @@ def inputs_digest(out: Path, mission: Path, half: str) -> str:
 def judge_by_others(
     mission: Mission, folder: Path, methods: Mapping[str, Method]
 ) -> Iterator[Judged]:
-    """The verdicts of the methods by the marks of each crowd.
+    """The verdicts of the methods by the marks of each crowd, and by other marks of one observer.
 
     Args:
         mission: as it was read.
@@ -76,8 +81,14 @@ def judge_by_others(
         look_on(PROGRAM, os.environ, words)
         for crowd in CROWDS:
             marked = replace(mission, marks=user_marks(Path(marks) / f"{crowd}.parquet"))
-            for row in judge(marked, methods, _LABELS, users=()):
+            of_crowd = {name: one for name, one in methods.items() if name in _METHODS}
+            for row in judge(marked, of_crowd, _LABELS, users=()):
                 yield replace(row, who=crowd)
+    alone = {name: one for name, one in methods.items() if name in ALONE_METHODS}
+    for variant in VARIANTS:
+        for marked in other_marks(mission, variant):
+            for row in judge(marked, alone, ("confused",), users=()):
+                yield replace(row, who=variant)
 
 
 def save_sensitivity(rows: Iterable[Judged], out: Path) -> None:
