@@ -124,7 +124,8 @@ def test_the_posterior_of_two_by_hand():
 
 
 # Streams 0 and 1 are of parameter 0, 2 of parameter 1, nobody is of parameter 2. By acted, with the
-# weight 1, parameter 0 has e^2 and 1 has e^-1, none of them e^0; waited has e^1, e^-1 and e^0. The
+# weight 1, parameter 0 has the mean of e^0 and e^2 and 1 has e^-1, none of them e^0; waited has the
+# mean of e^1 and e^0, e^-1 and e^0. The
 # baseline has 1/1 and 1/2, so 2/3 and 1/3 of what is not "none of them", by type I, and the other
 # way round by the better of both.
 def test_the_witnesses_are_mixed_by_hand():
@@ -144,10 +145,12 @@ def test_the_witnesses_are_mixed_by_hand():
         said = Said(np.array([0, 0, 1]), ranks, np.array([odds]))
         return mixture(found, said, replace(weights, **changes))
 
-    did = np.array([math.e**2, 1 / math.e, 0, 1]) / (math.e**2 + 1 / math.e + 1)
+    two = (1 + math.e**2) / 2
+    did = np.array([two, 1 / math.e, 0, 1]) / (two + 1 / math.e + 1)
     some = 1 - did[3]
     did = (did + np.array([some * 2 / 3, some / 3, 0, did[3]])) / 2
-    waits = np.array([math.e, 1 / math.e, 0, 1]) / (math.e + 1 / math.e + 1)
+    two = (1 + math.e) / 2
+    waits = np.array([two, 1 / math.e, 0, 1]) / (two + 1 / math.e + 1)
     some = 1 - waits[3]
     waits = (waits + np.array([some / 3, some * 2 / 3, 0, waits[3]])) / 2
     assert mixed(-50.0).shares[0].tolist() == pytest.approx(did.tolist())

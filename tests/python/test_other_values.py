@@ -10,16 +10,20 @@ from pytpc.diagnosis.ranking.known_good import (
     MOST_SETTINGS,
     SET_ANEW,
     UNCHANGED,
+    Instead,
+    Moved,
     before_changes,
     of_good_run,
     of_settings,
+    other_thresholds,
 )
 from pytpc.diagnosis.ranking.other_values import diagnose_beside, diagnose_replayed
-from pytpc.diagnosis.ranking.replayed_outcomes import ACQUITTED, replayed, turns
+from pytpc.diagnosis.ranking.replayed_outcomes import ACQUITTED, UNKNOWN_CHARGE, replayed, turns
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
+from pytpc.recording.parameter_change import Change
 from pytpc.static.link_unit import Transform
 
 STATIC = static_info(
@@ -45,7 +49,7 @@ def turned_spans(values, thresh, other, step=1.0):
     rows.append((30.0, 1, 0, 0, 1))
     stream = ResultStreams.of(events(rows), Tpcs.of(STATIC)).streams[0]
     turned = (stream.cmp > thresh) != (stream.cmp > other)
-    begins, lengths = turns(stream, turned, other)
+    begins, lengths = turns(stream, turned, np.full(turned.size, float(other)))
     return list(zip(begins.tolist(), lengths.tolist(), strict=True))
 
 
@@ -82,8 +86,45 @@ def test_two_turns_are_two():
 
 
 def test_old_values_become_thresholds_in_their_own_unit():
-    changes = [("/node/angle_deg", 3.0), ("~height", 1.5), ("~unknown", 1.0)]
-    assert before_changes(STATIC, changes) == {key(3): 7.0, key(0): 1.5}
+    changes = [
+        Change("/node/angle_deg", "", 3.0, 4.0),
+        Change("~height", "", 1.5, math.nan),
+        Change("~unknown", "", 1.0, 2.0),
+    ]
+    assert before_changes(STATIC, changes) == {key(3): Instead(9.0, 7.0), key(0): 1.5}
+
+
+# x + start: nobody knows where it started, but with 5 in place of 2 it is 3 more.
+def test_a_threshold_to_which_the_parameter_is_added_moves_with_it():
+    added = Transform("expression", text="x + start")
+    static = static_info(comparison(0, "~timeout", transform=added))
+    (other,) = before_changes(static, [Change("~timeout", "", 5.0, 2.0)]).values()
+    assert other == Moved(3.0)
+    assert other_thresholds(np.array([10.0, 20.0]), other).tolist() == [13.0, 23.0]
+    assert before_changes(static, [Change("~timeout", "", 5.0, math.nan)]) == {}
+
+
+# Two costmaps run the same code, one with a width of 6 and one with 9: the first had 5 before.
+def test_only_evaluations_with_the_changed_value_are_replayed():
+    other = other_thresholds(np.array([6.0, 9.0, 6.0]), Instead(6.0, 5.0))
+    assert other[[0, 2]].tolist() == [5.0, 5.0]
+    assert math.isnan(other[1])
+    rows = [(t, 0, limit < 5.5, 5.5, limit) for t in range(0, 60, 2) for limit in (6, 9)]
+    rows += [(t, 1, 0, 0, 1) for t in range(100)]
+    found = replayed(recording(rows, 70), STATIC, {key(0): Instead(9.0, 8.0)})
+    assert found["~height"] == ACQUITTED
+    assert replayed(recording(rows, 70), STATIC, {key(0): Instead(6.0, 5.0)})["~height"] > ACQUITTED
+    # Nothing was evaluated with that value, so nobody knows.
+    gone = replayed(recording(rows, 70), STATIC, {key(0): Instead(7.0, 5.0)})
+    assert gone == {"~height": UNKNOWN_CHARGE}
+
+
+# With 9 instead of 3 gate's first comparison would not have turned; of the second nothing is known.
+def test_a_comparison_that_cannot_be_replayed_may_have_done_it():
+    static = static_info(comparison(0, "~gate"), comparison(1, "~gate"), comparison(2, "~far"))
+    rows = [(t, n, 0, 1.0, 3.0) for t in range(50) for n in range(3)]
+    found = replayed(recording(rows, 40), static, {key(0): 9.0, key(2): 9.0})
+    assert found == {"~gate": UNKNOWN_CHARGE, "~far": ACQUITTED}
 
 
 def test_of_a_good_run_only_what_differs_is_replayed():
@@ -176,9 +217,17 @@ def test_what_was_set_while_it_ran_is_replayed_with_its_first_value():
     assert np.isnan(np.delete(found.prior, tpcs.names.index("~height"))).all()
 
 
-def test_a_threshold_that_is_worked_out_is_no_setting():
-    values = range(MOST_SETTINGS + 1)
+@pytest.mark.parametrize("values", [range(MOST_SETTINGS + 1), (5, 2, 5)])
+def test_a_threshold_that_is_worked_out_is_no_setting(values):
     assert of_settings(STATIC, Tpcs.of(STATIC), events(set_anew(*values, every=5.0))).others == {}
+
+
+# The log looks as if height was set from 5 to 2, but the parameter server had 2 all the time.
+def test_what_is_known_to_have_kept_its_value_was_not_set():
+    mission = recording(set_anew(5, 5, 2), 28, 35, kind="I")
+    changed = [Change("~speed", "", 3.0, 4.0)]
+    found = diagnose_beside(mission, STATIC, changes=changed)
+    assert found.names[found.order[0]] == "~speed"
 
 
 # Two nodes run the code, each with its own value.

@@ -89,7 +89,7 @@ def test_the_only_difference_is_blamed_if_it_turns_the_decisions_at_the_marks(ti
 @pytest.mark.parametrize("kind", ["I", "II", None])
 def test_what_turns_nothing_is_not_blamed_though_nothing_else_differs(times, kind):
     found = judged(run("bad", nearest=12.0, marks=marks_at(times, kind)))
-    assert found.none > 0.9, found.text
+    assert found.none > 0.8, found.text
     assert found.text.startswith("not sure: most likely none of the parameters (")
     assert "; the code is that of the good run monday, so perhaps something around" in found.text
 

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
 from pytpc.base.columns import Floats
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.diagnosis.thresholds.inverse import kept_as
-from pytpc.diagnosis.thresholds.units import NoUnitError, is_text, read_type, tree_of
+from pytpc.diagnosis.thresholds.units import NoUnitError, added_by, is_text, read_type, tree_of
 from pytpc.recording.events import Events
 from pytpc.recording.parameter_change import Change
 from pytpc.static.arithmetic import Tree, evaluate
@@ -39,12 +39,40 @@ SET_ANEW = 1.0
 """The same of one that was set anew while the mission ran: hardly any are, and a robot that went
 right before goes wrong after it. By reason, the study has none."""
 
-MOST_SETTINGS = 8
-"""A threshold that changes more often in a node is worked out, and not set."""
+MOST_SETTINGS = 4
+"""A threshold that changes so often in a node, or that gets a value again which it had before, is
+worked out, or several objects have one of their own: it was not set."""
 
 _ORDERED = frozenset({"<", "<=", ">", ">="})
 _CLOSE = 1e-6
 """A default that the code computes, or keeps in a float, is the threshold up to this part."""
+
+
+class Moved(NamedTuple):
+    """The other threshold of a comparison whose threshold is worked out: so much greater."""
+
+    by: float
+
+
+class Instead(NamedTuple):
+    """The other threshold ``then`` where it is ``now``; other objects may have another one."""
+
+    now: float
+    then: float
+
+
+Other: TypeAlias = "float | Moved | Instead"
+"""The other threshold of a comparison."""
+
+
+def other_thresholds(thresholds: Floats, other: Other) -> Floats:
+    """float64[n]: the other thresholds at the evaluations with these; nan where it is not known."""
+    if isinstance(other, Moved):
+        return thresholds + other.by
+    if isinstance(other, Instead):
+        same = np.isclose(thresholds, other.now, rtol=_CLOSE, atol=0.0)
+        return np.where(same, other.then, np.nan)
+    return np.full(thresholds.size, other)
 
 
 class KnownGood(NamedTuple):
@@ -54,24 +82,25 @@ class KnownGood(NamedTuple):
     """
 
     prior: Floats
-    others: Mapping[str, float]
+    others: Mapping[str, Other]
 
 
-def before_changes(
-    static_info: StaticInfo, changes: Iterable[tuple[str, float]]
-) -> dict[str, float]:
-    """The threshold that each comparison, by its key, has with the old values of (parameter, old).
+def before_changes(static_info: StaticInfo, changes: Iterable[Change]) -> dict[str, Other]:
+    """The threshold that each comparison, by its key, has with the old values.
 
     Comparisons of text, and those with an unknown way from parameter to threshold, are left out.
     """
-    found = {}
+    found: dict[str, Other] = {}
     named = [(key, one) for key, one in static_info.thresholds.items() if one.source is not None]
     every = ByParameter(named, lambda item: item[1].source or "")
-    for parameter, old in changes:
-        for key, _ in every.meant(parameter):
-            threshold = _threshold(static_info, key, old)
-            if not math.isnan(threshold):
-                found[key] = threshold
+    for change in changes:
+        for key, comparison in every.meant(change.parameter):
+            now, then = (_threshold(static_info, key, v) for v in (change.new, change.old))
+            factor = added_by(comparison)
+            if not math.isnan(then):
+                found[key] = then if math.isnan(now) else Instead(now, then)
+            elif factor is not None and math.isfinite(change.old - change.new):
+                found[key] = Moved(factor * (change.old - change.new))
     return found
 
 
@@ -124,7 +153,7 @@ def of_references(
     here = thresholds_of(events, tpcs)
     there = [thresholds_of(one, tpcs) for one in references]
     prior: dict[str, float] = {}
-    others: dict[str, float] = {}
+    others: dict[str, Other] = {}
     for code, name in enumerate(tpcs.parameters):
         key, now = tpcs.keys[code], float(here[code])
         known = [float(one[code]) for one in there if not math.isnan(one[code])]
@@ -144,7 +173,7 @@ def of_defaults(static_info: StaticInfo, tpcs: Tpcs, events: Events) -> KnownGoo
     """What the defaults in the code say: of ROS 1's ``param``, of ROS 2's declarations."""
     here = thresholds_of(events, tpcs)
     prior: dict[str, float] = {}
-    others: dict[str, float] = {}
+    others: dict[str, Other] = {}
     for code, (key, name) in enumerate(zip(tpcs.keys, tpcs.parameters, strict=True)):
         now, default = float(here[code]), static_info.comparisons[key].default
         if math.isnan(now) or default is None or isinstance(default, str):
@@ -166,7 +195,7 @@ def of_settings(static_info: StaticInfo, tpcs: Tpcs, events: Events) -> KnownGoo
     """What was set anew while the mission ran; the other threshold is the first one."""
     own = events.with_keys(tpcs.keys)
     prior: dict[str, float] = {}
-    others: dict[str, float] = {}
+    others: dict[str, Other] = {}
     for code in np.flatnonzero(np.isnan(thresholds_of(events, tpcs))).tolist():
         if _tree(static_info, tpcs.keys[code]) is None:
             continue
@@ -174,7 +203,8 @@ def of_settings(static_info: StaticInfo, tpcs: Tpcs, events: Events) -> KnownGoo
         for node in np.unique(own.node[rows]).tolist():
             values = own.thresh[rows[own.node[rows] == node]]
             switched = np.count_nonzero(values[1:] != values[:-1])
-            if np.isfinite(values).all() and 0 < switched < MOST_SETTINGS:
+            returns = switched >= np.unique(values).size
+            if np.isfinite(values).all() and 0 < switched < MOST_SETTINGS and not returns:
                 prior[tpcs.parameters[code]] = SET_ANEW
                 others[tpcs.keys[code]] = float(values[0])
     return KnownGood(_by_name(tpcs, prior), others)

@@ -17,6 +17,7 @@ from pytpc.diagnosis.ranking.known_good import (
     DEFAULT,
     UNCHANGED,
     KnownGood,
+    Other,
     before_changes,
     of_changes,
     of_defaults,
@@ -25,7 +26,7 @@ from pytpc.diagnosis.ranking.known_good import (
 )
 from pytpc.diagnosis.ranking.posterior import Posterior, diagnose_log, softmax
 from pytpc.diagnosis.ranking.reach import reach_prior
-from pytpc.diagnosis.ranking.replayed_outcomes import replayed
+from pytpc.diagnosis.ranking.replayed_outcomes import UNKNOWN_CHARGE, replayed
 from pytpc.diagnosis.ranking.summarised import with_summarised
 from pytpc.diagnosis.results.differences import RunDifferences
 from pytpc.diagnosis.scores.score_tables import Tpcs
@@ -142,8 +143,7 @@ def _by_values(
     found: list[KnownGood] = []
     if changes:
         # The last value for a parameter counts.
-        oldest_last = [(one.parameter, one.old) for one in reversed(changes)]
-        old = before_changes(static_info, oldest_last)
+        old = before_changes(static_info, reversed(changes))
         found.append(KnownGood(of_changes(tpcs.names, changes), old))
     if references:
         found.append(of_references(static_info, tpcs, here, list(map(with_summarised, references))))
@@ -157,7 +157,9 @@ def _by_values(
     else:
         # If all have their defaults, these tell nobody from anybody else.
         return diagnose_log(recording, static_info)
-    prior = np.where(np.isnan(anew.prior), prior, anew.prior)
+    # What is known to have kept its value was not set, whatever the thresholds do.
+    kept = found[0].prior == UNCHANGED if changes else np.zeros(prior.size, np.bool_)
+    prior = np.where(np.isnan(anew.prior) | kept, prior, anew.prior)
     others = {key: value for one in (*found, anew) for key, value in one.others.items()}
     return diagnose_replayed(recording, static_info, prior, others, none_score)
 
@@ -173,7 +175,7 @@ def diagnose_replayed(
     recording: Recording,
     static_info: StaticInfo,
     prior: Floats,
-    others: Mapping[str, float],
+    others: Mapping[str, Other],
     none_score: float = NOBODY,
 ) -> Posterior:
     """The diagnosis of `pytpc.diagnosis.ranking.posterior` with what the replay says.
@@ -189,7 +191,10 @@ def diagnose_replayed(
     if not np.isfinite(alone.scores).any():
         return alone
     found = replayed(recording, static_info, others)
-    charges = np.array([found.get(name, 0.0) for name in alone.names])
+    charges = np.array([found.get(name, math.nan) for name in alone.names])
+    # What kept its value, or its default, has no other threshold.
+    unknown = np.where(prior > DEFAULT, UNKNOWN_CHARGE, 0.0)
+    charges = np.where(np.isnan(charges), unknown, charges)
     scores = ALONE * alone.scores + REPLAYED * charges + prior
     posterior, none = softmax(scores, none_score)
     return replace(alone, scores=scores, posterior=posterior, none=none)

@@ -8,10 +8,11 @@ of them", a probability (docs/reference/scores.md#how-it-is-joined):
 
 P(I) and P(II) are how likely either type is from what the marks say (``type_odds``); l is the share
 of latches in type II: a change that cannot be undone. *acted* and *waited* are conditional logits
-(McFadden 1974) of the evidence of `pytpc.diagnosis.ranking.mark_evidence`, of each parameter's best
-comparison. The *baseline* is the order by the thesis's ranks, joined over the marks: place k has a
-probability of 1/k to a power; it says nothing of "none of them". A parameter that one witness puts
-first is high in the mixture; a product would need all witnesses to agree. A few weights are fitted
+(McFadden 1974) of the evidence of `pytpc.diagnosis.ranking.mark_evidence`, each parameter with the
+mean of its comparisons' odds. The *baseline* is the order by the thesis's ranks, joined over the
+marks: place k has a probability of 1/k to a power; it says nothing of "none of them". A parameter
+that one witness puts first is high in the mixture; a product would need all witnesses to agree. A
+few weights are fitted
 on the tuning half of the study (`pytpc_evaluation.study.fit`).
 """
 
@@ -242,7 +243,7 @@ def mixture(found: MarkEvidence, said: Said, weights: Weights) -> Mixture:
         + weights.flat * found.flat
     )
     shape = said.ranked.shape[1:]
-    own = [_logit(_best(scores, said.places, shape), weights.none) for scores in (acted, waited)]
+    own = [_logit(_mean(scores, said.places, shape), weights.none) for scores in (acted, waited)]
     orders = [_logit(weights.ranked * one, -math.inf) for one in said.ranked]
     did, waits = (_half(a, b) for a, b in zip(own, orders, strict=True))
     second = 1.0 / (1.0 + np.exp(-said.odds))[:, None]
@@ -260,10 +261,18 @@ def _half(own: Floats, order: Floats) -> Floats:
     return np.column_stack([(own[:, :-1] + (1.0 - none) * order[:, :-1]) / 2, none])
 
 
-def _best(scores: Floats, places: Int64s, shape: tuple[int, ...]) -> Floats:
-    """float64[s, p]: the score of each parameter's best stream; -inf without a stream."""
+def _mean(scores: Floats, places: Int64s, shape: tuple[int, ...]) -> Floats:
+    """float64[s, p]: the score of each parameter; -inf without a stream.
+
+    Any of its streams may be the one, each as likely before: the mean of their odds. With the best
+    one alone, who is compared at twenty places would be likelier than who is at one.
+    """
     best = np.full(math.prod(shape), -np.inf)
     np.maximum.at(best, places, scores)
+    odds, count = np.zeros(best.size), np.bincount(places, minlength=best.size)
+    np.add.at(odds, places, np.exp(scores - best[places]))
+    known = count > 0
+    best[known] += np.log(odds[known] / count[known])
     return best.reshape(shape)
 
 

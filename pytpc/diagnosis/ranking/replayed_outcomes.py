@@ -26,6 +26,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from pytpc.base.columns import Bools, Floats
+from pytpc.diagnosis.ranking.known_good import Other, other_thresholds
 from pytpc.diagnosis.ranking.mark_evidence import SHARE, Marked, Wait, any_time, caused, marked
 from pytpc.diagnosis.ranking.posterior import type_odds
 from pytpc.diagnosis.ranking.result_streams import ResultStream, ResultStreams
@@ -44,16 +45,21 @@ LEAST = 0.001
 SLOPE_S = 2.0
 """How long a value's slope is measured, to extrapolate it."""
 
-ACQUITTED = -8.0
-"""The log odds of a parameter whose other value would have turned nothing before the marks: less
-than "none of them", even if nothing else differs."""
+ACQUITTED = -5.0
+"""The charge of a comparison whose other threshold would have turned nothing before the marks, and
+the least of all. Not less: a parameter may act as a number beside its comparisons, as a padding
+does that is compared with its own old value only. Between -3 and -8 nothing changes in the study,
+whose parameters act in comparisons."""
 
-LEAST_CHARGE = -4.0
-"""The least of one whose other value would have turned something."""
+
+UNKNOWN_CHARGE = -1.7
+"""That of a comparison whose other threshold is not known. In the study's tuning half, 939
+parameters that differ from two good runs and are not to blame have, in the mean, as much evidence
+against them as this charge is."""
 
 
 def replayed(
-    recording: Recording, static_info: StaticInfo, others: Mapping[str, float]
+    recording: Recording, static_info: StaticInfo, others: Mapping[str, Other]
 ) -> dict[str, float]:
     """What speaks against the parameters whose comparisons are replayed, in log odds.
 
@@ -63,7 +69,8 @@ def replayed(
         others: the other threshold of each comparison to replay.
 
     Returns:
-        By the parameter's name; the worst of its comparisons counts.
+        By the parameter's name, for those with such a threshold; the worst of the comparisons
+        counts.
     """
     tpcs = Tpcs.of(static_info)
     streams = ResultStreams.of(with_summarised(recording), tpcs)
@@ -71,21 +78,34 @@ def replayed(
     odds = type_odds(recording.marks)
     wait = Wait.before(marks, streams.seconds)
     found: dict[str, float] = {}
+    asked = {name for key, name in zip(tpcs.keys, tpcs.parameters, strict=True) if key in others}
+    unknown: set[str] = set()
     for stream in streams.streams:
         key, name = tpcs.keys[stream.code], tpcs.names[stream.column]
         if key not in others:
+            unknown.add(name)
             continue
-        other = others[key]
+        other = other_thresholds(stream.thresh, others[key])
+        if np.isnan(other).all():
+            unknown.add(name)
+            continue
         turned = is_other(static_info.thresholds[key].relation, stream, other)
         charge = ACQUITTED
         if np.any(turned & (stream.times <= marks.times.max())):
-            charge = max(charge, LEAST_CHARGE, _charge(stream, turned, other, (marks, wait), odds))
+            charge = max(charge, _charge(stream, turned, other, (marks, wait), odds))
         found[name] = max(charge, found.get(name, ACQUITTED))
+    # Another one of its comparisons may have done it.
+    for name in unknown & asked:
+        found[name] = max(found.get(name, ACQUITTED), UNKNOWN_CHARGE)
     return found
 
 
-def is_other(relation: str, stream: ResultStream, other: float) -> Bools:
-    """bool[n]: whether the outcome would differ with the other threshold."""
+def is_other(relation: str, stream: ResultStream, other: Floats) -> Bools:
+    """bool[n]: whether the outcome would differ with the other thresholds, float64[n].
+
+    It would not where these are nan.
+    """
+    other = np.where(np.isnan(other), stream.thresh, other)
     if relation == "flag":
         return np.asarray((stream.thresh != 0) != (other != 0))
     now = outcomes(relation, stream.cmp, stream.thresh)
@@ -93,12 +113,12 @@ def is_other(relation: str, stream: ResultStream, other: float) -> Bools:
 
 
 def _charge(
-    stream: ResultStream, turned: Bools, other: float, evidence: tuple[Marked, Wait], odds: float
+    stream: ResultStream, turned: Bools, other: Floats, evidence: tuple[Marked, Wait], odds: float
 ) -> float:
     marks, wait = evidence
     begins, lengths = turns(stream, turned, other)
     early = begins <= marks.firsts.max()
-    acted = LEAST_CHARGE
+    acted = ACQUITTED
     if early.any():
         weights = np.maximum(1.0 - 1.0 / (1.0 + (lengths[early] / MOMENT_S) ** 2), LEAST)
         acted = caused(begins[early], weights, wait.seconds, marks) - any_time(wait.seconds, marks)
@@ -111,13 +131,13 @@ def _charge(
     return float(np.logaddexp(acted - np.logaddexp(0.0, odds), latched - np.logaddexp(0.0, -odds)))
 
 
-def turns(stream: ResultStream, turned: Bools, other: float) -> tuple[Floats, Floats]:
+def turns(stream: ResultStream, turned: Bools, other: Floats) -> tuple[Floats, Floats]:
     """The spans in which the outcome would differ.
 
     Args:
         stream: n evaluations.
         turned: bool[n].
-        other: the other threshold.
+        other: float64[n], the other thresholds.
 
     Returns:
         float64[turns] each: when they begin, and their lengths in s; infinite if the value was not
@@ -129,7 +149,9 @@ def turns(stream: ResultStream, turned: Bools, other: float) -> tuple[Floats, Fl
     begins = np.flatnonzero(turned & ~goes_on)
     ends = np.flatnonzero(turned & (last | ~np.append(turned[1:], False)))
     lengths = [
-        stream.times[end] + _until_alike(stream, end, other) if last[end] else stream.times[end + 1]
+        stream.times[end] + _until_alike(stream, end, float(other[end]))
+        if last[end]
+        else stream.times[end + 1]
         for end in ends.tolist()
     ]
     return stream.times[begins], np.array(lengths, np.float64) - stream.times[begins]

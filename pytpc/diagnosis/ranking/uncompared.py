@@ -16,7 +16,7 @@ from pytpc.diagnosis.ranking.known_good import SET_ANEW
 from pytpc.diagnosis.ranking.mark_evidence import any_time, caused, marked
 from pytpc.diagnosis.ranking.other_values import ALONE, REPLAYED, nobody
 from pytpc.diagnosis.ranking.posterior import Posterior
-from pytpc.diagnosis.ranking.replayed_outcomes import LEAST_CHARGE
+from pytpc.diagnosis.ranking.replayed_outcomes import ACQUITTED, UNKNOWN_CHARGE
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.results.differences import Difference, RunDifferences
 from pytpc.recording.mission import Recording
@@ -57,7 +57,7 @@ def with_uncompared(
         return 1.0, ()
     order = found.order
     level = found.scores[order[0]] - math.log(found.posterior[order[0]]) if order else 0.0
-    plain = -ALONE * math.log(max(len(order), 1))
+    plain = REPLAYED * UNKNOWN_CHARGE - ALONE * math.log(max(len(order), 1))
     base = level if order else nobody(differences) - math.log(found.none)
     odds = [
         math.exp(plain + _prior(one) + _set_anew(one, recording, streams) - base) for one in silent
@@ -83,5 +83,5 @@ def _set_anew(one: Difference, recording: Recording, streams: ResultStreams) -> 
     if not turns.size:
         return 0.0
     fits = caused(turns, np.ones(turns.size), streams.seconds, marks)
-    charge = max(LEAST_CHARGE, fits - any_time(streams.seconds, marks))
-    return SET_ANEW + REPLAYED * charge
+    charge = max(ACQUITTED, fits - any_time(streams.seconds, marks))
+    return SET_ANEW + REPLAYED * (charge - UNKNOWN_CHARGE)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import math
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, Context
@@ -104,6 +105,54 @@ def tree_of(comparison: Comparison) -> Tree:
         raise NoUnitError("the parameter is multiplied by 0")
     scaled: Tree = "x" if transform.scale == 1 else ("*", float(transform.scale), "x")
     return scaled if transform.offset == 0 else ("+", scaled, float(transform.offset))
+
+
+def added_by(comparison: Comparison) -> float | None:
+    """By how much a threshold moves with its parameter, where other values are only added to it.
+
+    1 for ``x + start``, 1000 for ``now - 1000 * x`` with the sign of the text; None where other
+    values multiply the parameter, or the text says something else. Not of thresholds with a tree.
+    """
+    transform = comparison.transform
+    if transform is None or transform.kind != "expression" or transform.tree is not None:
+        return None
+    text = transform.text.replace("->", ".").replace("::", "_")
+    try:
+        return _slope(ast.parse(text, mode="eval").body) or None
+    except (SyntaxError, ValueError, RecursionError, ArithmeticError):
+        return None
+
+
+def _slope(node: ast.expr) -> float:
+    """The constant factor of ``x`` in an expression.
+
+    Raises:
+        ValueError: there is no such factor.
+    """
+    match node:
+        case ast.Name(id="x"):
+            return 1.0
+        case _ if not any(isinstance(one, ast.Name) and one.id == "x" for one in ast.walk(node)):
+            return 0.0
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            slope = -_slope(operand)
+        case ast.BinOp(left=left, op=ast.Add(), right=right):
+            slope = _slope(left) + _slope(right)
+        case ast.BinOp(left=left, op=ast.Sub(), right=right):
+            slope = _slope(left) - _slope(right)
+        case ast.BinOp(
+            left=ast.Constant(value=int() | float() as factor), op=ast.Mult(), right=one
+        ):
+            slope = factor * _slope(one)
+        case ast.BinOp(
+            left=one, op=ast.Mult(), right=ast.Constant(value=int() | float() as factor)
+        ):
+            slope = factor * _slope(one)
+        case ast.BinOp(left=one, op=ast.Div(), right=ast.Constant(value=int() | float() as factor)):
+            slope = _slope(one) / factor
+        case _:
+            raise ValueError("not only added")
+    return slope
 
 
 def threshold_of(comparison: Comparison, value: float) -> float:

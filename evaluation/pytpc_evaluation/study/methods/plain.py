@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pytpc.diagnosis.ranking.known_good import of_good_run
+from pytpc.diagnosis.ranking.known_good import of_good_run, other_thresholds
 from pytpc.diagnosis.ranking.replayed_outcomes import is_other
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.scores.score_tables import Tpcs
@@ -60,7 +60,8 @@ def turned_decisions(case: Case) -> Verdict:
         key, name = tpcs.keys[stream.code], tpcs.names[stream.column]
         if key in others:
             relation = case.static_info.thresholds[key].relation
-            turned = int(np.count_nonzero(is_other(relation, stream, others[key])))
+            other = other_thresholds(stream.thresh, others[key])
+            turned = int(np.count_nonzero(is_other(relation, stream, other)))
             found[name] = found.get(name, 0) + turned
     order = sorted(found, key=lambda name: (-found[name], name))
     return Verdict(tuple(order), scores=tuple(float(found[name]) for name in order))
