@@ -108,6 +108,7 @@ class FixState:
 
     ``static`` is the static information that was given, ``references`` are the good runs and
     ``workspace`` the one in which files are looked for. ``most`` is how many tries there may be.
+    ``go_on`` says that it does not end where it is likely none of the parameters.
     ``stand`` and ``why`` say where it stands, as far as that was known when the file was written.
     """
 
@@ -119,6 +120,7 @@ class FixState:
     tries: tuple[FixTry, ...] = ()
     stand: Stand = "open"
     why: str = ""
+    go_on: bool = False
 
     @property
     def open_try(self) -> FixTry | None:
@@ -162,6 +164,7 @@ class FixState:
             "references": [str(one) for one in self.references],
             "workspace": _text(self.workspace),
             "most": self.most,
+            "go_on": self.go_on,
             "tries": [one.to_json() for one in self.tries],
         }
         write_atomic(file, dump_json(document))
@@ -208,6 +211,8 @@ class FixState:
             tuple(FixTry.from_json(one) for one in document["tries"]),
             cast(Stand, stand),
             str(document["why"]),
+            # A file of an earlier version does not say it.
+            bool(document.get("go_on", False)),
         )
 
 

@@ -91,7 +91,8 @@ class Conversation:
             return "fixed", ""
         if self.state.open_try is not None:
             return "open", ""
-        why = why_over(self.odds, self.state.counted, self.state.most)
+        state = self.state
+        why = why_over(self.odds, state.counted, state.most, go_on=state.go_on)
         if not why and next(self._values(), None) is None:
             why = _NO_VALUE
         return ("exhausted", why) if why else ("open", "")
@@ -176,7 +177,7 @@ class Conversation:
         declared = _declared(asked, advice)
         known = [float(base), *(one.value for one in found.known)]
         known += [float(one.new) for one in tries if one.basis in KNOWN_GOOD]
-        if found.basis in {"reference", "before"}:
+        if found.basis in KNOWN_GOOD:
             known.append(float(found.value))
         would_be = FixTry(
             parameter,

@@ -28,6 +28,7 @@ class _FixArguments:
     references: tuple[Path, ...]
     state_file: Path
     most: int | None
+    go_on: bool
     yes: bool
     beyond: bool
     verdict: Verdict | None
@@ -75,6 +76,11 @@ class _FixArguments:
     type=click.IntRange(min=1),
     metavar="N",
     help=f"Try at most so many values; may be raised later. [default: {MOST_TRIES}]",
+)
+@click.option(
+    "--go-on",
+    is_flag=True,
+    help="Go on although it is likely none of the parameters; holds for later calls, too.",
 )
 @click.option("--yes", is_flag=True, help="Make the change without asking.")
 @click.option(
@@ -175,6 +181,8 @@ def _begun(given: _FixArguments) -> Session:
         state = replace(state, workspace=given.workspace.absolute())
     if given.most is not None:
         state = replace(state, most=given.most)
+    if given.go_on:
+        state = replace(state, go_on=True)
     return Session(file, state, given.consent)
 
 

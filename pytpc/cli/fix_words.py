@@ -14,7 +14,7 @@ from pytpc.api.fixing import Conversation, Proposal
 from pytpc.base.wording import exact, listed, percent, plain, show
 from pytpc.cli.console import console, table_of, warn
 from pytpc.cli.value_commands import show_diff
-from pytpc.diagnosis.results.suspects import WORTH
+from pytpc.diagnosis.results.suspects import SURE, WORTH
 from pytpc.diagnosis.trying import KNOWN_GOOD, VERDICTS
 from pytpc.values.apply import change_as_json
 from pytpc.values.origins import to_json
@@ -57,6 +57,8 @@ def show_stand(talk: Conversation, file: Path) -> None:
         console().print(table_of(_TRIES, _rows(talk), right=("Try",)), highlight=False)
     if state.stand == "exhausted":
         _show_suspects(talk)
+        if talk.odds.none >= SURE and len(state.counted) < state.most:
+            click.echo(plain(f"to go on all the same: {fix_words(file, '--go-on')}"))
     show_standing(state, file)
 
 
@@ -150,6 +152,7 @@ def state_document(state: FixState, file: Path) -> dict[str, object]:
         "why": state.why,
         "mission": str(state.mission),
         "most": state.most,
+        "go_on": state.go_on,
         "tries": [one.to_json() for one in state.tries],
         "run_again": run_again(state.mission),
     }

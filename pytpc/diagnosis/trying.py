@@ -14,7 +14,7 @@ from typing import Literal, NamedTuple, TypeVar, get_args
 
 from pytpc.base.wording import Number, percent, show, tidy
 from pytpc.diagnosis.results.advice import Basis
-from pytpc.diagnosis.results.suspects import WORTH
+from pytpc.diagnosis.results.suspects import SURE, WORTH
 from pytpc.diagnosis.suggestion.wanted_value import between
 from pytpc.diagnosis.thresholds.intervals import Interval
 from pytpc.recording.declaration import Declared
@@ -26,6 +26,9 @@ Verdict = Literal["better", "same", "worse", "other", "fixed"]
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 STILL_THERE: frozenset[Verdict] = frozenset(("better", "same", "worse"))
 """The verdicts after which the error is still there, so that the mission's marks are about it."""
+
+TAKEN_BACK: frozenset[Verdict] = frozenset(("same", "worse", "other"))
+"""The verdicts after which the old value is set again."""
 
 KNOWN_GOOD: frozenset[Basis] = frozenset(("reference", "before", "default", "declared"))
 """Whose values have worked, or were meant to: of a good run, from before a change, and defaults."""
@@ -60,6 +63,11 @@ several steps must not lead further than one."""
 
 FEWER = 0.5
 """A mission with fewer than this share of the marks is better; chance alone seldom halves them."""
+
+CERTAIN = 6
+"""So many marks of two missions in all, of one type before and of the other after it, are about
+another error. People confuse the types, as often as a coin does those of type II (thesis, table
+6.13): with five marks one of 16 would be so by chance, with six one of 32."""
 
 MOST_TRIES = 3
 """Tries of a conversation, unless a person wants more: as many as the study's chains have."""
@@ -127,21 +135,22 @@ def after_tries(odds: Odds, tries: Sequence[Try]) -> Odds:
     return _summing_to_1(suspects, odds.none)
 
 
-def why_over(odds: Odds, tries: Sequence[Try], most: int) -> str:
+def why_over(odds: Odds, tries: Sequence[Try], most: int, *, go_on: bool = False) -> str:
     """Why nothing more is to be tried; empty while there is something.
 
-    A value that acted on the error is followed up, however likely "none of them" is.
+    As sure as an accusation has to be, it is none of them; but a value that acted on the error is
+    followed up, however likely that is.
 
     Args:
         odds: after the tries.
         tries: those with a verdict.
         most: how many there may be.
+        go_on: also if it is likely none of them.
     """
     if not tries:
         return ""
-    likeliest = max(odds.suspects.values(), default=0.0)
-    if odds.none > likeliest and tries[-1].verdict not in _ACTS:
-        return f"none of the parameters is now likelier than any of them ({percent(odds.none)})"
+    if odds.none >= SURE and tries[-1].verdict not in _ACTS and not go_on:
+        return f"it is now likely that it is none of the parameters ({percent(odds.none)})"
     if len(tries) >= most:
         return f"{most} {'try is' if most == 1 else 'tries are'} used up"
     return ""
@@ -292,8 +301,10 @@ def judged(before: Sequence[Mark], after: Sequence[Mark]) -> Verdict:
         return "fixed"
     if len(after) < FEWER * len(before):
         return "better"
-    one, other = (min(marks, key=Mark.order) for marks in (before, after))
-    return "same" if (one.type, one.where) == (other.type, other.where) else "other"
+    one, other = (min(marks, key=Mark.order).where for marks in (before, after))
+    types = [{mark.type for mark in marks} for marks in (before, after)]
+    turned = types in ([{"I"}, {"II"}], [{"II"}, {"I"}]) and len(before) + len(after) >= CERTAIN
+    return "other" if one != other or turned else "same"
 
 
 def _geometric(values: Sequence[float]) -> float:

@@ -277,3 +277,47 @@ def test_percent():
         ">99 %",
         "100 %",
     ]
+
+
+# `v > 10` was never true. Below 5.6 it would have been so once. Of the eight values the median is
+# 5.2 and the median deviation 0.15, so below 5.0 - 1.4826 * 0.15 = 4.7776 it would always be. A
+# default beyond the smallest change may do, and is known. If it lies the other way, the type of the
+# error is more doubtful than the default is.
+@pytest.mark.parametrize(
+    ("default", "value", "basis"),
+    [
+        (None, 4.77, "lasting"),
+        (5.3, 5.3, "default"),
+        (12.0, 12.0, "default"),
+    ],
+)
+def test_a_default_goes_before_the_log(default, value, basis):
+    static, log = never_above(default)
+    (advice,) = advise_blamed(blame(log, static), log, static)
+    assert (advice.remedy.value, advice.remedy.basis) == (value, basis)
+    by_log = Question(sources=frozenset())
+    (advice,) = advise_blamed(blame(log, static), log, static, by_log)
+    assert advice.remedy.basis == "lasting"
+
+
+# The present value, and one that is not enough.
+@pytest.mark.parametrize("default", [10.0, 8.0])
+def test_a_default_that_does_nothing_is_none(default):
+    static, log = never_above(default)
+    (advice,) = advise_blamed(blame(log, static), log, static)
+    assert advice.remedy.basis == "lasting"
+
+
+def test_it_is_said_if_the_log_points_away_from_the_default():
+    static, log = never_above(12.0)
+    (advice,) = advise_blamed(blame(log, static), log, static)
+    assert advice.remedy.text == (
+        "raise ~limit from 10 to 12 (the default in the source; the log alone points the other way)"
+    )
+
+
+def never_above(default):
+    """A robot that stands: its static information, and a mission with a mark without a type."""
+    static = static_info(comparison(0, "~limit", default=default))
+    rows = [(90 + n, 0, False, v, 10) for n, v in enumerate((5, 5.2, 5.4, 5.1, 5.6, 5.3, 5, 5.2))]
+    return static, Recording("stands", events(rows), (Mark(ns(98), None),), 0, ns(100))

@@ -222,11 +222,29 @@ def test_it_ends_when_the_tries_are_used_up_and_goes_on_with_more(robot):
     assert document("--tries", 2)["proposal"]["parameter"] == "~max_speed"
 
 
-def test_it_ends_when_none_of_them_is_likelier(robot):
+# Of the log alone: 0.70, and 0.79 after the first try.
+def test_it_ends_when_it_is_likely_none_of_them(robot):
     alone("--yes")
+    fix("--say", "same", "--yes")
     shown = fix("--say", "same").stdout
-    assert "not fixed: none of the parameters is now likelier than any of them" in shown
+    assert "not fixed: it is now likely that it is none of the parameters" in shown
+    assert "to go on all the same: pytpc fix --go-on" in shown
     assert (state()["state"], file_of(robot)) == ("exhausted", PARAMS)
+
+
+def test_whoever_wants_to_goes_on_though_it_is_likely_none_of_them(robot):
+    alone("--yes")
+    fix("--say", "same", "--yes")
+    fix("--say", "same")
+    assert document()["proposal"] is None
+    assert document("--go-on")["proposal"]["parameter"] == "~max_tilt"
+    # It is written down.
+    fix("--yes")
+    assert [one["parameter"] for one in state()["tries"]] == [
+        "~max_tilt",
+        "~max_speed",
+        "~max_tilt",
+    ]
 
 
 def test_a_parameter_whose_file_is_not_known_is_set_by_hand(robot):

@@ -65,11 +65,14 @@ def test_a_parameter_that_a_mission_did_not_compare_is_not_ruled_out():
     assert rounded(both) == ({"~a": 0.0428}, 0.9572)
 
 
-def test_it_is_over_when_none_of_them_is_likelier():
-    odds = Odds({"~a": 0.2, "~b": 0.3}, 0.5)
-    assert "none of the parameters is now likelier" in why_over(odds, [tried("same")], 3)
+# As sure as an accusation has to be. Who wants to, goes on.
+def test_it_is_over_when_it_is_likely_none_of_them():
+    odds = Odds({"~a": 0.08, "~b": 0.12}, 0.8)
+    assert "likely that it is none of the parameters (80 %)" in why_over(odds, [tried("same")], 3)
+    assert why_over(odds, [tried("same")], 3, go_on=True) == ""
     assert why_over(odds, [], 3) == ""
     assert why_over(odds, [tried("better")], 3) == ""
+    assert why_over(Odds({"~a": 0.21}, 0.79), [tried("same")], 3) == ""
 
 
 def test_it_is_over_when_the_tries_are_used_up():
@@ -170,9 +173,17 @@ def marks(*kinds, note=""):
         (marks(), "fixed"),
         (marks("I", "I"), "same"),
         (marks("I"), "better"),
-        (marks("II", "I"), "other"),
+        (marks("II", "II", "I"), "same"),
         (marks("I", "I", note="@/arm stuck"), "other"),
     ],
 )
 def test_the_marks_of_a_mission_say_what_came_of_it(after, verdict):
     assert judged(marks("I", "I", "II"), after) == verdict
+
+
+# A coin has four and two marks as they are in one of 32 cases, three and two in one of 16.
+@pytest.mark.parametrize(("before", "verdict"), [("IIII", "other"), ("III", "same")])
+def test_a_type_is_believed_where_all_marks_say_it(before, verdict):
+    assert judged(marks(*before), marks("II", "II")) == verdict
+    assert judged(marks(*before), marks("II", "I")) == "same"
+    assert judged(marks(*before), marks(None, None)) == "same"

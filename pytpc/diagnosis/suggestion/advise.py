@@ -27,6 +27,7 @@ from pytpc.diagnosis.results.suspects import (
     Suspect,
     Uncompared,
 )
+from pytpc.diagnosis.suggestion.known_values import defaults
 from pytpc.diagnosis.suggestion.remedy import NAMES, remedy, restored
 from pytpc.diagnosis.suggestion.smallest_change import At, smallest_change
 from pytpc.diagnosis.suggestion.what_if import what_if
@@ -304,7 +305,7 @@ def advise_blamed(
     All marks count, but not the types that observers gave: most people confuse them (thesis, table
     6.13), and the value depends on the type more than on anything else. The log decides the type
     (`Remedy.kind`). A value from before a change, or from the good run, goes before the log: with
-    it the robot worked.
+    it the robot worked. So does the default, unless the log wants more in its direction.
     """
     found = []
     for accused in blame.suspects[: question.top]:
@@ -315,7 +316,7 @@ def advise_blamed(
         about = declared_for(question.declared or (), accused, static_info.source_path(accused.key))
         untyped = [replace(mark, type=None) for mark in blame.marks]
         value = remedy(recording, static_info, name, untyped, question.about(about))
-        value = _as_before(value, question)
+        value = _as_before(_as_default(value, static_info, question.about(about)), question)
         kind = value.kind or accused.type
         asked = replace(question, kind=kind, marks=blame.marks)
         then = _replayed(recording, static_info, value, asked)
@@ -336,6 +337,24 @@ def as_in_the_good_run(found: Difference) -> Remedy:
 def stopping_last(advice: Sequence[BlamedAdvice]) -> list[BlamedAdvice]:
     """Of suspects that share a position those come last whose value would stop everything."""
     return sorted(advice, key=lambda one: (one.accused.position, one.stops))
+
+
+def _as_default(found: Remedy, static_info: StaticInfo, question: Question) -> Remedy:
+    """The remedy with the default, if that may do, or if the log points away from it.
+
+    If this parameter is wrong, then most likely because somebody moved it away from its default.
+    The direction in the log depends on the types of error, which people confuse.
+    """
+    if found.basis in NAMES or found.current is None or question.flown:
+        return found
+    for one in defaults(static_info, found.parameter, question.declaration):
+        if one.source not in question.sources or one.value == found.current:
+            continue
+        away = found.value is None or (found.value > found.current) != (one.value > found.current)
+        if away or (found.smallest is not None and holds(found.smallest.feasible, one.value)):
+            return restored(found, one.value, one.source, NAMES[one.source])
+        return found
+    return found
 
 
 def _as_before(found: Remedy, question: Question) -> Remedy:

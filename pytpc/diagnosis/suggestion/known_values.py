@@ -78,15 +78,28 @@ def known_values(
     flown = None if reference is None else value_in(reference, static_info, parameter)
     if flown is not None:
         found.append(KnownValue("reference", float(flown)))
-    declared = case.possible.declared
-    defaults: list[tuple[Source, Default]] = [
-        ("default", case.comparison.default),
+    return [*found, *_numbers(case.comparison.default, case.possible.declared)]
+
+
+def defaults(
+    static_info: StaticInfo, parameter: str, declared: Declared | None
+) -> list[KnownValue]:
+    """The default of a parameter in the source, and the declared one."""
+    own = (one for one in static_info.thresholds.values() if parameter_name(one) == parameter)
+    given = (one.default for one in own if one.default is not None)
+    return _numbers(next(given, None), declared)
+
+
+def _numbers(default: Default, declared: Declared | None) -> list[KnownValue]:
+    found: list[tuple[Source, Default]] = [
+        ("default", default),
         ("declared", None if declared is None else declared.default),
     ]
-    for source, value in defaults:
-        if value is not None and not isinstance(value, str):
-            found.append(KnownValue(source, float(value)))
-    return found
+    return [
+        KnownValue(source, float(value))
+        for source, value in found
+        if value is not None and not isinstance(value, str)
+    ]
 
 
 def value_in(recording: Recording, static_info: StaticInfo, parameter: str) -> Number | None:
