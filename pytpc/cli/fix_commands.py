@@ -14,7 +14,7 @@ from pytpc.base.errors import InputError
 from pytpc.base.wording import plain
 from pytpc.cli.arguments import JSON, PATH, REFERENCE, as_object
 from pytpc.cli.console import print_json
-from pytpc.cli.fix_session import Consent, Session
+from pytpc.cli.fix_session import Consent, Session, alone_with
 from pytpc.cli.fix_words import document, fix_words, show_next, show_stand, state_document
 from pytpc.cli.options import STATIC, Seconds, offer_good_run
 from pytpc.cli.value_commands import WORKSPACE
@@ -131,6 +131,14 @@ def fix_command(given: _FixArguments) -> None:
     pytpc fix --say fixed                     done
     pytpc fix --undo                          take back all changes
     """
+    with alone_with(given.state_file):
+        _fix(given)
+
+
+COMMANDS: list[click.Command] = [fix_command]
+
+
+def _fix(given: _FixArguments) -> None:
     session = _begun(given)
     if given.undo:
         _undo(session)
@@ -151,9 +159,6 @@ def fix_command(given: _FixArguments) -> None:
         talk, proposal, how = _attended(session, talk)
     if given.as_json:
         print_json(document(talk, session.file, proposal, how))
-
-
-COMMANDS: list[click.Command] = [fix_command]
 
 
 def _begun(given: _FixArguments) -> Session:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import shlex
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
@@ -18,7 +19,8 @@ from pytpc.api.fix_state import FixState, FixTry
 from pytpc.api.fixing import Conversation, Proposal, missions_with_the_error, with_verdict
 from pytpc.api.missions import find_declared, same_reports
 from pytpc.api.values import Place
-from pytpc.base.errors import InputError
+from pytpc.base.errors import InputError, TpcError
+from pytpc.base.folder_lock import alone_in
 from pytpc.base.wording import exact, plain, show
 from pytpc.cli.console import progress, warn
 from pytpc.cli.fix_words import fix_words, show_proposal, show_taken_back
@@ -27,7 +29,25 @@ from pytpc.cli.options import asked_mission, good_runs, recording_of, warn_plain
 from pytpc.cli.sources import static_for
 from pytpc.cli.value_commands import is_terminal, with_consent
 from pytpc.diagnosis.question import PLAIN
-from pytpc.diagnosis.trying import Verdict, judged
+from pytpc.diagnosis.trying import TAKEN_BACK, Verdict, judged
+
+
+@contextlib.contextmanager
+def alone_with(file: Path) -> Iterator[None]:
+    """Hold a state file against other calls of the command within the block.
+
+    Raises:
+        RunError: another one is at work with it.
+        TpcError: its folder does not exist, or cannot be written.
+    """
+    folder = file.absolute().parent
+    in_use = f"another `pytpc fix` works with {file.name}; wait until it ends, or give -o FILE"
+    with contextlib.ExitStack() as held:
+        try:
+            held.enter_context(alone_in(folder, file.name, in_use))
+        except OSError as error:
+            raise TpcError(f"cannot be written: {error.strerror}", folder) from error
+        yield
 
 
 @dataclass(frozen=True)
@@ -124,7 +144,7 @@ class Session:
         """
         found = self.check_is_open()
         said = replace(found, verdict=verdict, mission=mission)
-        if verdict in {"same", "worse", "other"}:
+        if verdict in TAKEN_BACK:
             said = self._taken_back(said)
         self.save(with_verdict(self.state, said))
 
@@ -168,12 +188,11 @@ class Session:
             talk: what the tries say.
             by_files: pass over what a person would have to set.
         """
-        found: tuple[Proposal | None, Setting | None, bool] = (None, None, False)
+        asks = not by_files and not self.consent.yes and self.consent.asks
         for proposal, how in self._settings(talk):
             if by_files and how.change is None:
                 say(plain(f"passed over: {how.by_hand}"))
                 continue
-            asks = not by_files and not self.consent.yes and self.consent.asks
             if proposal.beyond and not self.consent.beyond:
                 if not asks:
                     far = f"{proposal.would_be.text} is {proposal.beyond}"
@@ -187,9 +206,10 @@ class Session:
                 show_proposal(proposal, how)
             if by_files or self.consent.yes:
                 return proposal, how, True
-            agreed = asks and click.confirm("Try it?", err=True)
-            return proposal, how, agreed
-        return found
+            answer = _asked_about() if asks else "q"
+            if answer != "n":
+                return proposal, how, answer == "y"
+        return None, None, False
 
     def _settings(self, talk: Conversation) -> Iterator[tuple[Proposal, Setting]]:
         for proposal in talk.proposals():
@@ -242,3 +262,10 @@ class Session:
         verdict = judged(talk.marks, self._asked(mission).run.recording.marks)
         say(plain(f"pytpc: {what}: {verdict}"))
         self.say(verdict, mission)
+
+
+def _asked_about() -> str:
+    """What a person says of a proposal: ``y``, ``n`` for the next one, or ``q``."""
+    words = "Try it: y(es), n(ext suspect) or q(uit)?"
+    choice = click.Choice(["y", "n", "q"], case_sensitive=False)
+    return str(click.prompt(words, "q", type=choice, show_choices=False, err=True))

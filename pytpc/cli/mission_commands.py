@@ -28,6 +28,7 @@ from pytpc.api.record import (
 )
 from pytpc.api.static_of_mission import GIVE, NONE_FOUND, static_to_keep
 from pytpc.base.errors import InputError, RunError
+from pytpc.base.folder_lock import alone_in
 from pytpc.base.signals import Stop
 from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import PATH, as_object
@@ -38,7 +39,6 @@ from pytpc.cli.mission_options import MISSION_OPTIONS, MissionArguments
 from pytpc.cli.running_graph import ROS, ros2_here, tell
 from pytpc.recording.faults import faults_of
 from pytpc.recording.mission import REPORTS_FOLDER, RUN_FILE, read_run
-from pytpc.ros.folder_lock import alone_in
 from pytpc.ros.mission_run import BAG_FILE, refuse_earlier
 from pytpc.ros.ros1.master import Master, uri_of
 from pytpc.ros.ros2.address import is_ros2, words_of

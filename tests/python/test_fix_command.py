@@ -24,6 +24,7 @@ from fix_samples import (
 )
 from mission_samples import comparison, link_unit, static_info
 
+from pytpc.cli.fix_session import alone_with
 from pytpc.cli.main import main
 from pytpc.static.link_unit import ParameterRead
 from pytpc.static.static_info import StaticInfo
@@ -75,11 +76,15 @@ def test_its_suspects_are_those_of_rank(robot):
 
 
 @pytest.mark.usefixtures("asked")
-@pytest.mark.parametrize(("answer", "text"), [("y", TILTED), ("n", PARAMS), ("", PARAMS)])
-def test_a_person_is_asked(robot, answer, text):
-    begun(answer=f"{answer}\n")
+@pytest.mark.parametrize(
+    ("answers", "text"),
+    [("y", TILTED), ("q", PARAMS), ("", PARAMS), ("ny", FASTER), ("nn", PARAMS)],
+)
+def test_a_person_is_asked_suspect_by_suspect(robot, answers, text):
+    shown = begun(answer="".join(f"{answer}\n" for answer in answers) or "\n").stdout
     assert file_of(robot) == text
-    assert len(state()["tries"]) == (answer == "y")
+    assert len(state()["tries"]) == answers.endswith("y")
+    assert ("try: /node/max_speed 1 -> 4" in shown) == answers.startswith("n")
 
 
 def test_with_yes_it_changes_the_file_and_says_how_to_go_on(robot):
@@ -247,6 +252,19 @@ def test_whoever_wants_to_goes_on_though_it_is_likely_none_of_them(robot):
     ]
 
 
+def test_a_state_file_is_one_call_s_at_a_time(robot):
+    begun("--yes")
+    with alone_with(robot / "fix.json"):
+        result = fix("--say", "same", status=1)
+        assert "another `pytpc fix` works with fix.json" in result.stderr
+        # Another file is another conversation.
+        fix("-o", "other.json", status=1)
+        assert "other.json" in fix("-o", "other.json", status=1).stderr
+    assert state()["tries"][0]["verdict"] is None
+    fix("--say", "same")
+    assert not list(robot.glob(".*.lock"))
+
+
 def test_a_parameter_whose_file_is_not_known_is_set_by_hand(robot):
     (robot / "today/origins.json").unlink()
     shown = begun("--yes").stdout
@@ -342,7 +360,7 @@ def test_beyond_allows_it(robot):
 @pytest.mark.usefixtures("crawling", "asked")
 @pytest.mark.parametrize("answer", ["", "n"])
 def test_a_person_is_asked_first_and_the_default_is_no(robot, answer):
-    result = alone(answer=f"{answer}\nn\n")
+    result = alone(answer=f"{answer}\nq\n")
     assert "Try it all the same? [y/N]" in result.stderr
     assert (state()["tries"], file_of(robot)) == ([], PARAMS)
 

@@ -8,9 +8,9 @@ import pytest
 from click.testing import CliRunner
 
 from pytpc.base.errors import RunError
+from pytpc.base.folder_lock import alone_in
 from pytpc.base.signals import Stop
 from pytpc.cli.main import main
-from pytpc.ros.folder_lock import alone_in
 from pytpc.ros.mission_run import RecordOptions
 from pytpc.ros.ros1.record_mission import record_graph
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner
+from fix_samples import robot_environment
 from jsonschema import Draft202012Validator, ValidationError
 
 from pytpc.cli.main import main
@@ -34,6 +35,7 @@ ANSWERS: Sequence[tuple[str, str]] = [
     ("origins", "origin today limit"),
     ("doctor", "doctor today"),
     ("apply", "apply p.yaml limit 0.4 --dry-run"),
+    ("fix", "fix today"),
     ("changes", "apply --list"),
 ]
 
@@ -50,6 +52,11 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     origins = {origin.name: origin for origin in (set_by, unset)}
     write_origins({"launch": None}, origins, tmp_path / "today/origins.json")
     return tmp_path
+
+
+@pytest.fixture
+def robot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    return robot_environment(tmp_path, monkeypatch)
 
 
 def check(document: object, name: str) -> None:
@@ -75,6 +82,18 @@ def test_undo_and_the_list_of_changes(here: Path):
     check(answer("apply --list"), "changes")
     check(answer("apply --undo"), "undo")
     assert (here / "p.yaml").read_text() == "limit: 0.5\n"
+
+
+def test_tries_of_a_fix(robot: Path):
+    assert robot.is_dir()
+    proposed = answer("fix today --static static.json --reference yesterday")
+    assert proposed["proposal"]["file"]
+    check(proposed, "fix")
+    check(answer("fix --yes"), "fix")
+    check(answer("fix --say same"), "fix")
+    undone = answer("fix --undo")
+    assert undone["tries"][0]["undone"]
+    check(undone, "fix_undo")
 
 
 def test_a_mark_is_the_same_object_everywhere(here: Path):

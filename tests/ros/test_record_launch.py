@@ -16,10 +16,10 @@ from recorded_robot import make_package, make_workspace, processes_of, shell, wa
 
 from patience import PATIENCE_S, wait_for
 from pytpc.base.errors import RunError
+from pytpc.base.folder_lock import alone_in
 from pytpc.build.build import workspace_env
 from pytpc.ingest.reading import read
 from pytpc.recording.marks import read_marks
-from pytpc.ros.folder_lock import alone_in
 from pytpc.ros.mission_run import Progress, RecordOptions, read_status
 from pytpc.ros.ros1.record_mission import run_mission
 from terminals import Terminal

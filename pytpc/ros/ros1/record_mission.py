@@ -18,13 +18,13 @@ from dataclasses import replace
 from pathlib import Path
 
 from pytpc.base.errors import MissingToolError, RunError, TpcError
+from pytpc.base.folder_lock import alone_in
 from pytpc.base.paths import project_root
 from pytpc.base.signals import Stop
 from pytpc.base.wording import listed
 from pytpc.ingest.file_counts import FileCounter
 from pytpc.recording.graph_file import GRAPH_FILE, write_graph
 from pytpc.recording.mission import REPORTS_FOLDER
-from pytpc.ros.folder_lock import alone_in
 from pytpc.ros.mission_run import (
     BAG_FILE,
     DEFAULT_TOPICS,

@@ -15,6 +15,7 @@ import yaml
 
 from pytpc.base.atomic import write_atomic
 from pytpc.base.errors import MissingToolError, RunError, TpcError
+from pytpc.base.folder_lock import alone_in
 from pytpc.base.signals import Stop
 from pytpc.base.wording import many
 from pytpc.ingest.decoders import ROS2
@@ -25,7 +26,6 @@ from pytpc.ingest.ros2 import decode_log
 from pytpc.recording.graph_file import GRAPH_FILE, write_graph
 from pytpc.recording.marks import MarkMessages
 from pytpc.recording.parameter_values import ParameterValues, SetValue
-from pytpc.ros.folder_lock import alone_in
 from pytpc.ros.intake import CLOCK, Recorder
 from pytpc.ros.mission_run import (
     MCAP_FILE,

@@ -14,11 +14,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from pytpc.base.errors import RunError
+from pytpc.base.folder_lock import alone_in
 from pytpc.base.signals import Stop
 from pytpc.base.wording import listed, many
 from pytpc.ingest.file_counts import FileCounter, FileCounts
 from pytpc.recording.mission import REPORTS_FOLDER
-from pytpc.ros.folder_lock import alone_in
 from pytpc.ros.mission_run import (
     MCAP_FILE,
     Deaths,
