@@ -169,7 +169,7 @@ def test_changes_are_written_newest_last(tmp_path):
 
 
 def flight(example, name: str = "type1_b", **changes: object) -> Flight:
-    own = {"suggested": None, "changes": (), **changes}
+    own = {"suggested": (), "changes": (), **changes}
     return Flight("mission", example, example.treatment(name), 1, "tuning", **own)
 
 
@@ -178,9 +178,9 @@ def test_settings_are_the_decoys_and_over_them_what_is_suggested(tmp_path, monke
     changes = (Change("~a", "/pump", 1.0, 1.03), Change("~b", "/pump", 2.0, 0.5))
     # The treatment sets its own.
     assert flight(example, changes=changes).settings() == {"/pump/a": 1.03}
-    tried = flight(example, changes=changes, suggested=Setting("~b", "", 1.9))
+    tried = flight(example, changes=changes, suggested=(Setting("~b", "", 1.9),))
     assert tried.settings() == {"/pump/a": 1.03, "/pump/b": 1.9}
-    again = flight(example, changes=changes, suggested=Setting("~a", "/pump", 1.5))
+    again = flight(example, changes=changes, suggested=(Setting("~a", "/pump", 1.5),))
     assert again.settings() == {"/pump/a": 1.5}
 
 
@@ -188,7 +188,7 @@ def test_a_suggested_value_has_the_type_of_the_robots_own(tmp_path, monkeypatch)
     example = robot(tmp_path, monkeypatch, "type1_b")
 
     def set_to(name: str, value: float) -> object:
-        (found,) = flight(example, suggested=Setting(name, "", value)).settings().values()
+        (found,) = flight(example, suggested=(Setting(name, "", value),)).settings().values()
         return found, type(found)
 
     assert set_to("~count", 4.0) == (4, int)
@@ -202,7 +202,7 @@ def test_a_suggested_value_has_the_type_of_the_robots_own(tmp_path, monkeypatch)
 def test_a_suggestion_for_no_parameter_is_an_error(tmp_path, monkeypatch, node):
     example = robot(tmp_path, monkeypatch, "type1_b")
     with pytest.raises(InputError, match="~gone: no parameter of this robot"):
-        flight(example, suggested=Setting("~gone", node, 1.0)).settings()
+        flight(example, suggested=(Setting("~gone", node, 1.0),)).settings()
 
 
 def test_overlay_is_read_back_as_it_was_set(tmp_path):

@@ -15,7 +15,7 @@ from pytpc.cli.main import main
 from pytpc_evaluation.commands import study_commands
 from pytpc_evaluation.study import flying
 from pytpc_evaluation.study.dataset import Cause, StudyFile, save_done
-from pytpc_evaluation.study.plan import FlightSelection, Setting, flights_of
+from pytpc_evaluation.study.plan import FlightSelection, Setting, flights_of, setting_label
 from pytpc_evaluation.study.suggested import (
     FAILED_FILE,
     Tried,
@@ -75,9 +75,20 @@ def test_the_list_is_read(tmp_path):
     path = tmp_path / "wanted.json"
     path.write_text(json.dumps([ROW, {**ROW, "seed": 2, "node": None, "value": 3}]))
     assert load_wanted(path) == [
-        WantedFlight("robot", "type1_b", 1, Setting("~b", "/pump", 1.9)),
-        WantedFlight("robot", "type1_b", 2, Setting("~b", "", 3.0)),
+        WantedFlight("robot", "type1_b", 1, (Setting("~b", "/pump", 1.9),)),
+        WantedFlight("robot", "type1_b", 2, (Setting("~b", "", 3.0),)),
     ]
+
+
+# The same mission with another value, beside one that stays.
+def test_a_value_that_stays_is_set_too(tmp_path):
+    path = tmp_path / "wanted.json"
+    kept = {"parameter": "~a", "node": "/pump", "value": 2}
+    path.write_text(json.dumps([ROW, {**ROW, "kept": [kept]}]))
+    first, second = load_wanted(path)
+    assert first.settings == (Setting("~b", "/pump", 1.9),)
+    assert second.settings == (Setting("~a", "/pump", 2.0), Setting("~b", "/pump", 1.9))
+    assert setting_label(second.settings) == "pump.a=2.0+pump.b=1.9"
 
 
 @pytest.mark.parametrize(
@@ -90,7 +101,7 @@ def test_the_list_is_read(tmp_path):
         ([{**ROW, "seed": "1"}], "seed '1'"),
         ([{**ROW, "system": 1}], "are not texts"),
         ([{name: ROW[name] for name in ROW if name != "value"}], "'value' is missing"),
-        ([ROW, {**ROW, "value": 2.0}], "robot/type1_b/1 is listed twice"),
+        ([ROW, ROW], "robot/type1_b/1 is listed twice"),
     ],
 )
 def test_a_wrong_list_is_an_error(tmp_path, document, what):
@@ -103,17 +114,17 @@ def test_a_wrong_list_is_an_error(tmp_path, document, what):
 
 def test_a_mission_has_to_be_there_before_it_is_flown_again(example, tmp_path):
     flights = flights_of(example)
-    wanted = WantedFlight("robot", "type1_b", 1, Setting("~b", "/pump", 1.9))
+    wanted = WantedFlight("robot", "type1_b", 1, (Setting("~b", "/pump", 1.9),))
     with pytest.raises(InputError, match="has not been flown"):
         suggested_flight(wanted, flights, tmp_path)
     save_done(made(), tmp_path / "missions/robot/type1_b/seed-1")
     flight = suggested_flight(wanted, flights, tmp_path)
-    assert flight.label == "suggested/robot/type1_b/seed-1"
+    assert flight.label == "suggested/robot/type1_b/seed-1/pump.b=1.9"
     assert flight.settings() == {"/pump/a": 1.5, "/pump/b": 1.9, "/pump/c": 0.008}
     # The same people look on.
     (mission,) = [one for one in flights if one.label == "missions/robot/type1_b/seed-1"]
     assert flight.people == mission.people
-    none = WantedFlight("robot", "type9", 1, wanted.setting)
+    none = WantedFlight("robot", "type9", 1, wanted.settings)
     with pytest.raises(InputError, match="there is no mission robot/type9/seed-1"):
         suggested_flight(none, flights, tmp_path)
 
@@ -125,7 +136,7 @@ def test_a_parameter_that_the_robots_file_has_not(fleet):
     wanted.write_text(json.dumps([ROW, other]))
     result = CliRunner().invoke(main, ["study", "suggested", "--out", str(fleet.out)])
     # The other one is flown all the same.
-    assert fleet.flown == ["suggested/robot/type1_b/seed-1"]
+    assert fleet.flown == ["suggested/robot/type1_b/seed-1/pump.b=1.9"]
     assert result.exit_code == 1
     assert "any node ~gone: no parameter of this robot" in result.stderr
     rows = pq.read_table(fleet.out / "results/suggestions-flown.parquet").to_pylist()
@@ -138,7 +149,7 @@ def test_failures_are_counted(fleet, tmp_path):
     wanted.write_text(json.dumps([ROW]))
     words = ["study", "suggested", str(wanted), "--out", str(fleet.out)]
     for times in (1, 2):
-        fleet.failures["suggested/robot/type1_b/seed-1"] = 2
+        fleet.failures["suggested/robot/type1_b/seed-1/pump.b=1.9"] = 2
         assert CliRunner().invoke(main, words).exit_code == 1
         (found,) = load_failed(fleet.out)
         assert (found.mission, found.digest) == ("robot/type1_b/seed-1", "1-2")
@@ -172,7 +183,8 @@ def fleet(example, tmp_path, monkeypatch) -> FakeFlier:
         folder = found.out / "missions/robot" / treatment / "seed-1"
         save_done(made(), folder)
         (folder / "causes.json").write_text(_of(cause))
-        again = found.out / "suggested/robot" / treatment / "seed-1"
+        tried = "pump.b=1.9" if treatment == "type1_b" else "a=1.5"
+        again = found.out / "suggested/robot" / treatment / "seed-1" / tried
         again.mkdir(parents=True)
         (again / "causes.json").write_text(_of(*([STANDS] if treatment == "type2_b" else [])))
     return found
@@ -190,7 +202,10 @@ def test_suggestions_are_flown_and_judged(fleet):
     wanted.write_text(json.dumps([ROW, other]))
     result = CliRunner().invoke(main, ["study", "suggested", "--out", str(fleet.out)])
     assert result.exit_code == 0, result.output
-    assert fleet.flown == ["suggested/robot/type1_b/seed-1", "suggested/robot/type2_b/seed-1"]
+    assert fleet.flown == [
+        "suggested/robot/type1_b/seed-1/pump.b=1.9",
+        "suggested/robot/type2_b/seed-1/a=1.5",
+    ]
     rows = pq.read_table(fleet.out / "results/suggestions-flown.parquet").to_pylist()
     # sha256sum: robot/type1_b and robot/type2_b are the only ones of their types.
     assert rows[0] == {**ROW, "type": "type1", "half": "tuning", "gone": True, "new": False} | {
@@ -199,7 +214,7 @@ def test_suggestions_are_flown_and_judged(fleet):
     }
     assert (rows[1]["gone"], rows[1]["new"], rows[1]["node"]) == (False, False, "")
     suggestion = json.loads(
-        (fleet.out / "suggested/robot/type1_b/seed-1/suggestion.json").read_text()
+        (fleet.out / "suggested/robot/type1_b/seed-1/pump.b=1.9/suggestion.json").read_text()
     )
     assert suggestion == {
         "schema": 1,
@@ -215,7 +230,7 @@ def test_suggestions_are_flown_and_judged(fleet):
 
 
 def test_a_suggestion_whose_flight_fails_is_a_row_and_status_1(fleet, tmp_path):
-    fleet.failures["suggested/robot/type1_b/seed-1"] = 2
+    fleet.failures["suggested/robot/type1_b/seed-1/pump.b=1.9"] = 2
     wanted = tmp_path / "wanted.json"
     wanted.write_text(json.dumps([ROW]))
     words = ["study", "suggested", str(wanted), "--out", str(fleet.out), "--json"]

@@ -13,14 +13,14 @@ from pytpc.base.errors import RunError
 from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import JSON, PATH, Command
 from pytpc.cli.console import console, print_json
-from pytpc_evaluation.commands.study_options import STUDY
+from pytpc_evaluation.commands.study_options import STUDY, seed_option
 from pytpc_evaluation.commands.study_progress import StudyProgress
 from pytpc_evaluation.commands.study_report import report_command
 from pytpc_evaluation.commands.study_sensitivity import sensitivity_command
 from pytpc_evaluation.commands.study_suggestions import suggestions_command
 from pytpc_evaluation.demo.demo_examples import EXAMPLES
 from pytpc_evaluation.study.flying import opened
-from pytpc_evaluation.study.plan import SEEDS, Flight, FlightSelection, flights_of
+from pytpc_evaluation.study.plan import Flight, FlightSelection, flights_of
 from pytpc_evaluation.study.run import Result
 from pytpc_evaluation.study.suggested import (
     TRIED_FILE,
@@ -62,13 +62,7 @@ def study_group() -> None:
 @click.option(
     "--treatment", "treatments", multiple=True, help="Fly only this treatment; may be repeated."
 )
-@click.option(
-    "--seed",
-    "seeds",
-    type=click.Choice([str(seed) for seed in SEEDS]),
-    multiple=True,
-    help="Fly only with this seed; may be repeated.",
-)
+@seed_option("Fly only")
 @click.option("--quick", is_flag=True, help="One robot, one error of each type, one seed.")
 @_flown
 def run_command(

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import click
 
 from pytpc.cli.arguments import PATH
-from pytpc_evaluation.study.plan import HALVES, Half
+from pytpc_evaluation.study.plan import HALVES, SEEDS, Half
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -36,6 +36,17 @@ def half_option(default: str, text: str) -> Callable[[Command], Command]:
         default=default,
         show_default=True,
         help=text,
+    )
+
+
+def seed_option(text: str) -> Callable[[Command], Command]:
+    """The option ``--seed``; the command gets ``seeds`` as texts."""
+    return click.option(
+        "--seed",
+        "seeds",
+        type=click.Choice([str(seed) for seed in SEEDS]),
+        multiple=True,
+        help=f"{text} with this seed; may be repeated.",
     )
 
 

@@ -12,8 +12,9 @@ from rich.text import Text
 from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import JSON
 from pytpc.cli.console import console, print_json, progress, warn
-from pytpc_evaluation.commands.study_options import CHOSEN, STUDY, half_option
+from pytpc_evaluation.commands.study_options import CHOSEN, STUDY, half_option, seed_option
 from pytpc_evaluation.study.methods import METHODS
+from pytpc_evaluation.study.plan import SEEDS
 from pytpc_evaluation.study.resume import alone_with_results
 from pytpc_evaluation.study.suggested import WANTED_FILE
 from pytpc_evaluation.study.suggestion_chains import VARIANTS, Chain, shares
@@ -30,6 +31,7 @@ from pytpc_evaluation.study.suggestions import Asked, next_round
     multiple=True,
     help="Ask for only this variant; may be repeated.",
 )
+@seed_option("Ask only about missions")
 @click.option(
     "--method",
     type=click.Choice(list(METHODS)),
@@ -46,6 +48,7 @@ def suggestions_command(
     out: Path,
     half: str,
     variants: tuple[str, ...],
+    seeds: tuple[str, ...],
     method: str | None,
     again: bool,
     as_json: bool,
@@ -56,7 +59,8 @@ def suggestions_command(
     """
     ranking = None if method is None else METHODS[method]
     with alone_with_results(out), progress("working out suggestions") as advance:
-        asked = Asked(CHOSEN[half], ranking, variants or tuple(VARIANTS), again)
+        numbers = [int(seed) for seed in seeds] or SEEDS
+        asked = Asked(CHOSEN[half], ranking, variants or tuple(VARIANTS), numbers, again)
         chains = next_round(out, asked, advance)
     mine = [chain for chain in chains if chain.half in CHOSEN[half]]
     for chain in mine:

@@ -154,7 +154,7 @@ def load_mission(out: Path, path: Path, half: Half) -> Mission:
         reference=_reference(out / "reference" / system),
         changes=_changes(path / CHANGES_FILE),
         round=treatment.get("round", 1),
-        good=_drawn(f"{system}/{path.parent.name}/{path.name}", _good(out / "good" / system)),
+        good=tuple(_thinned(one) for one in drawn_good_runs(out, path)),
         causes=_causes(path / CAUSES_FILE),
     )
 
@@ -236,16 +236,23 @@ def _reference(path: Path) -> Recording | None:
 
 
 @cache
-def _good(path: Path) -> tuple[Recording, ...]:
-    """The good runs of a robot, as they are learned."""
-    found = sorted(one for one in path.glob("seed-*") if (one / DONE_FILE).is_file())
-    return tuple(thinned(load_recording(one)) for one in found)
+def _thinned(path: Path) -> Recording:
+    """A good run, as it is learned."""
+    return thinned(load_recording(path))
 
 
-def _drawn(mission: str, runs: Sequence[Recording]) -> tuple[Recording, ...]:
-    """The runs in an order that is drawn for each mission: a method takes the first ones."""
-    drawn = [sha256(f"{mission}/{number}".encode()).hexdigest() for number in range(len(runs))]
-    return tuple(run for _, run in sorted(zip(drawn, runs, strict=True), key=lambda one: one[0]))
+def drawn_good_runs(out: Path, mission: Path) -> list[Path]:
+    """The good runs of a mission's robot, in an order that is drawn for each mission.
+
+    A method takes the first ones.
+    """
+    system, name = mission.parent.parent.name, f"{mission.parent.name}/{mission.name}"
+    every = sorted((out / "good" / system).glob("seed-*"))
+    runs = [one for one in every if (one / DONE_FILE).is_file()]
+    drawn = [
+        sha256(f"{system}/{name}/{number}".encode()).hexdigest() for number in range(len(runs))
+    ]
+    return [run for _, run in sorted(zip(drawn, runs, strict=True))]
 
 
 def seed_of(path: Path) -> int:

@@ -52,13 +52,20 @@ class Setting:
     node: str
     value: float
 
+    @property
+    def label(self) -> str:
+        """``pump.max_current=1.9``, the name of a folder."""
+        name = f"{self.node}/{self.parameter.lstrip('~')}".strip("/")
+        return f"{name.replace('/', '.')}={number_text(self.value)}"
+
 
 @dataclass(frozen=True)
 class Flight:
     """One flight of the study.
 
     ``changes`` are newest last, the treatment's own among them. ``half`` is None for a good run.
-    ``suggested`` is what is set in a flight that tries a suggestion.
+    ``suggested`` is what is set in a flight that tries a suggestion: the last is new, the others
+    were tried before and stay.
     """
 
     kind: Kind
@@ -67,7 +74,7 @@ class Flight:
     seed: int
     half: Half | None
     changes: tuple[Change, ...] = ()
-    suggested: Setting | None = None
+    suggested: tuple[Setting, ...] = ()
 
     @property
     def name(self) -> str:
@@ -76,7 +83,8 @@ class Flight:
             return self.example.name
         if self.kind == "good":
             return f"{self.example.name}/seed-{self.seed}"
-        return f"{self.example.name}/{self.treatment.name}/seed-{self.seed}"
+        tried = [setting_label(self.suggested)] if self.suggested else []
+        return "/".join([self.example.name, self.treatment.name, f"seed-{self.seed}", *tried])
 
     @property
     def label(self) -> str:
@@ -104,10 +112,14 @@ class Flight:
         own = read_parameters(self.example.parameters)
         decoys = (one for one in self.changes if one.parameter != self.treatment.parameter)
         found = {full_name(own, one.parameter, one.node): one.new for one in decoys}
-        if self.suggested is not None:
-            setting = self.suggested
+        for setting in self.suggested:
             found[full_name(own, setting.parameter, setting.node)] = setting.value
         return {name: _like(own[name], value) for name, value in sorted(found.items())}
+
+
+def setting_label(settings: Sequence[Setting]) -> str:
+    """The name of the folder in which what is set together was flown."""
+    return "+".join(one.label for one in settings)
 
 
 def full_name(own: Mapping[str, object], parameter: str, node: str) -> str:

@@ -27,7 +27,6 @@ FAILED_FILE = Path("results") / "suggestions-failed.json"
 SUGGESTION_FILE = "suggestion.json"
 MOST_FAILURES = 2
 """So often ``pytpc study suggested`` flies a value whose flight fails (each time twice)."""
-_FIELDS = ("system", "treatment", "seed", "parameter", "node", "value")
 _TRIED = pa.schema(
     [
         ("system", pa.string()),
@@ -48,12 +47,12 @@ _TRIED = pa.schema(
 
 @dataclass(frozen=True)
 class WantedFlight:
-    """A suggestion that is to be tried in one mission."""
+    """A suggestion that is to be tried in one mission; the last of ``settings`` is new."""
 
     system: str
     treatment: str
     seed: int
-    setting: Setting
+    settings: tuple[Setting, ...]
 
     @property
     def mission(self) -> tuple[str, str, int]:
@@ -92,7 +91,7 @@ def load_wanted(path: Path) -> list[WantedFlight]:
     """The list of what is to be tried; ``node`` may be null where one node has the parameter.
 
     Raises:
-        InputError: the file is not such a list, or has a mission twice.
+        InputError: the file is not such a list, or has a flight twice.
     """
     document = parse_json(path)
     try:
@@ -102,24 +101,31 @@ def load_wanted(path: Path) -> list[WantedFlight]:
     except (KeyError, TypeError, ValueError) as error:
         what = f"{error} is missing" if isinstance(error, KeyError) else str(error)
         raise InputError(f"not a list of suggestions: {what}", path) from error
-    seen: set[tuple[str, str, int]] = set()
-    for one in wanted:
-        if one.mission in seen:
+    for place, one in enumerate(wanted):
+        if one in wanted[:place]:
             raise InputError(f"{'/'.join(map(str, one.mission))} is listed twice", path)
-        seen.add(one.mission)
     return wanted
 
 
 def _wanted(one: object) -> WantedFlight:
     if not isinstance(one, dict):
         raise ValueError(f"{one!r} is no object")
-    system, treatment, seed, parameter, node, value = (one[name] for name in _FIELDS)
-    texts = (system, treatment, parameter, node or "")
-    if not all(isinstance(text, str) for text in texts):
-        raise ValueError(f"{texts} are not texts")
-    if not isinstance(seed, int) or not isinstance(value, int | float) or isinstance(value, bool):
-        raise ValueError(f"seed {seed!r} or value {value!r} is not a number")
-    return WantedFlight(system, treatment, seed, Setting(parameter, node or "", float(value)))
+    system, treatment, seed = (one[name] for name in ("system", "treatment", "seed"))
+    if not isinstance(seed, int):
+        raise ValueError(f"seed {seed!r} is not a number")
+    settings = tuple(_setting(each) for each in (*one.get("kept", ()), one))
+    if not isinstance(system, str) or not isinstance(treatment, str):
+        raise ValueError(f"{(system, treatment)} are not texts")
+    return WantedFlight(system, treatment, seed, settings)
+
+
+def _setting(one: Mapping[str, Any]) -> Setting:
+    parameter, node, value = (one[name] for name in ("parameter", "node", "value"))
+    if not isinstance(parameter, str) or not isinstance(node or "", str):
+        raise ValueError(f"{(parameter, node)} are not texts")
+    if not isinstance(value, int | float) or isinstance(value, bool):
+        raise ValueError(f"value {value!r} is not a number")
+    return Setting(parameter, node or "", float(value))
 
 
 def suggested_flight(wanted: WantedFlight, missions: Sequence[Flight], out: Path) -> Flight:
@@ -139,7 +145,7 @@ def suggested_flight(wanted: WantedFlight, missions: Sequence[Flight], out: Path
             continue
         if load_done(mission.folder(out)) is None:
             raise InputError("has not been flown: pytpc study run", mission.folder(out))
-        return replace(mission, kind="suggested", suggested=wanted.setting)
+        return replace(mission, kind="suggested", suggested=wanted.settings)
     raise InputError(f"there is no mission {system}/{treatment}/seed-{seed}")
 
 
@@ -180,11 +186,11 @@ def try_of(flight: Flight, out: Path) -> Tried:
         InputError: the causes of one of the two missions cannot be read.
         TpcError: the file cannot be written.
     """
-    treated = replace(flight, kind="mission", suggested=None)
+    treated = replace(flight, kind="mission", suggested=())
     done = load_done(treated.folder(out))
     before = load_causes(treated.folder(out) / CAUSES_FILE)
     tried = judged(before, load_causes(flight.folder(out) / CAUSES_FILE))
-    setting = {} if flight.suggested is None else asdict(flight.suggested)
+    setting = asdict(flight.suggested[-1])
     mission = "" if done is None else done.digest
     text = json.dumps({"schema": 1, "mission": mission, **setting, **asdict(tried)}, indent=1)
     write_atomic(flight.folder(out) / SUGGESTION_FILE, text.encode() + b"\n")
@@ -247,15 +253,13 @@ def _place(one: Mapping[str, Any]) -> tuple[Any, ...]:
 def _row(flight: Flight, failure: str, out: Path) -> dict[str, object]:
     done = None if failure else load_done(flight.folder(out))
     tried = None if done is None else try_of(flight, out)
-    setting = flight.suggested
-    assert setting is not None, "a flight that tries a suggestion has one"
     return {
         "system": flight.example.name,
         "treatment": flight.treatment.name,
         "type": flight.treatment.type,
         "half": flight.half,
         "seed": flight.seed,
-        **asdict(setting),
+        **asdict(flight.suggested[-1]),
         "gone": None if tried is None else tried.gone,
         "new": None if tried is None else tried.new,
         "reached": None if done is None else done.reached,

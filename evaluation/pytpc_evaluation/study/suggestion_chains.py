@@ -13,9 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pytpc.diagnosis.question import EVERY_SOURCE, Source
-from pytpc.static.parameters import same_parameter
 from pytpc_evaluation.study.listed import read_list
-from pytpc_evaluation.study.plan import Half
+from pytpc_evaluation.study.plan import Half, Setting, setting_label
 
 CHAINS_FILE = Path("results") / "suggestion-chains.json"
 HEADLINE = "lasting"
@@ -23,6 +22,8 @@ HEADLINE = "lasting"
 SUSPECTS = "suspects"
 RANKED = "ranked"
 RANKED_REFERENCE = "ranked-reference"
+FIX_RUNS: Mapping[str, int] = {"fix": 0, "fix-2-runs": 2}
+"""Variants that are conversations of ``pytpc fix``, and beside how many good runs each asks."""
 VARIANTS: Mapping[str, frozenset[Source] | None] = {
     "smallest": None,
     "lasting": frozenset(),
@@ -31,9 +32,10 @@ VARIANTS: Mapping[str, frozenset[Source] | None] = {
     RANKED: frozenset(),
     RANKED_REFERENCE: EVERY_SOURCE,
     SUSPECTS: frozenset(),
+    **dict.fromkeys(FIX_RUNS, EVERY_SOURCE),
 }
 """The known values that each may take; None for the smallest change."""
-MOST_TRIES = {"lasting": 3, SUSPECTS: 3}
+MOST_TRIES = {"lasting": 3, SUSPECTS: 3, **dict.fromkeys(FIX_RUNS, 3)}
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,7 @@ class Try:
     ``gone`` and ``new_error`` are None until it is flown, ``reason`` are the errors that were seen
     then. Where nothing was suggested ``value`` is None, and ``reason`` says why. Where the flight
     ``failed`` too often nothing is known of a new error, and the one of before counts as not gone.
+    ``fix`` is the try of a conversation (`FixTry.to_json`).
     """
 
     parameter: str
@@ -53,17 +56,28 @@ class Try:
     new_error: bool | None = None
     reason: str = ""
     failed: bool = False
+    fix: Mapping[str, Any] | None = None
 
     @property
     def is_open(self) -> bool:
         """Whether it is to be flown."""
         return self.value is not None and self.new_error is None and not self.failed
 
-    def is_same(self, parameter: str, node: str | None, value: float | None) -> bool:
-        """Whether it sets the same parameter, however it is called, to the same value."""
-        mine = self.parameter
-        same = same_parameter(mine, parameter) or same_parameter(parameter, mine)
-        return same and self.value == value and (self.node or node) == (node or self.node)
+    @property
+    def is_flown(self) -> bool:
+        """Whether it is known what came of it."""
+        return self.value is not None and self.new_error is not None
+
+    @property
+    def setting(self) -> Setting:
+        """What it sets; it has a value."""
+        assert self.value is not None, "what is flown has a value"
+        return Setting(self.parameter, self.node or "", self.value)
+
+    @property
+    def verdict(self) -> str | None:
+        """What the observer of a conversation said of it."""
+        return None if self.fix is None else self.fix["verdict"]
 
 
 @dataclass
@@ -72,7 +86,7 @@ class Chain:
 
     ``old`` and ``new`` are values of the changed parameter; ``order`` are the first suspects, empty
     of variants that are told the changed one. ``digest`` is that of the mission from which the
-    values are (`Done.digest`).
+    values are (`Done.digest`). ``observer`` is whose marks a conversation is about.
     """
 
     system: str
@@ -86,29 +100,42 @@ class Chain:
     order: tuple[str, ...] = ()
     tries: list[Try] = field(default_factory=list)
     digest: str = ""
+    observer: str = ""
 
     @property
     def mission(self) -> str:
         """Its folder below ``missions`` and ``suggested``."""
         return f"{self.system}/{self.treatment}/seed-{self.seed}"
 
+    def settings(self, place: int = -1) -> tuple[Setting, ...]:
+        """What is set in the flight of a try: its own value last, before it what stays set."""
+        own = self.tries[place].setting
+        stay = (one.setting for one in self.tries[:place] if one.verdict == "better")
+        kept = {one.parameter: one for one in stay if one.parameter != own.parameter}
+        return (*kept.values(), own)
+
+    def flown(self, place: int = -1) -> str:
+        """The folder of the flight of a try."""
+        return f"suggested/{self.mission}/{setting_label(self.settings(place))}"
+
     @property
     def is_over(self) -> bool:
         """Whether it has what it wants, or has tried often enough."""
-        if not self.tries:
+        if not self.tries or self.tries[-1].is_open:
             return False
         last = self.tries[-1]
-        if last.is_open:
-            return False
         if len(self.tries) >= MOST_TRIES.get(self.variant, 1):
             return True
-        if last.failed:
+        if last.value is None or last.failed:
             # There is no log from which to go on; the next suspect does not need it.
-            return self.variant != SUSPECTS
-        if last.value is None:
-            # The next suspect may have a value.
             return self.variant != SUSPECTS or not last.parameter
-        return last.gone is not False
+        # What the observer of a conversation saw, right or not, ends it.
+        return last.gone is not False if last.fix is None else last.verdict == "fixed"
+
+    def is_done(self, most: int) -> bool:
+        """Whether nothing of its first ``most`` tries is still to be flown."""
+        tries = self.tries[:most]
+        return not any(one.is_open for one in tries) and (self.is_over or len(tries) == most)
 
     @classmethod
     def from_json(cls, document: Mapping[str, Any]) -> Chain:
@@ -127,7 +154,10 @@ def load_chains(path: Path) -> list[Chain]:
 
 
 class Outcome(NamedTuple):
-    """What came of a chain within so many tries; a new error counts if it is of the last one."""
+    """What came of a chain within so many tries; a new error counts if it is of the last one.
+
+    Only a conversation may go on after the error was gone, since its observer marked something.
+    """
 
     unit: tuple[str, str]
     gone: bool
@@ -142,11 +172,12 @@ def outcomes(chains: Iterable[Chain], variant: str, most: int) -> tuple[list[Out
     found, waiting = [], 0
     for chain in (one for one in chains if one.variant == variant):
         tries = chain.tries[:most]
-        if any(one.is_open for one in tries) or not (chain.is_over or len(tries) == most):
+        if not chain.is_done(most):
             waiting += 1
         elif any(one.gone is not None or one.value is None for one in tries):
             unit = (chain.system, chain.treatment)
-            found.append(Outcome(unit, tries[-1].gone is True, tries[-1].new_error is True))
+            gone = any(one.gone is True for one in tries)
+            found.append(Outcome(unit, gone, tries[-1].new_error is True))
     return found, waiting
 
 

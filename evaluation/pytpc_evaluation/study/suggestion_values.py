@@ -18,8 +18,10 @@ from pytpc.recording.mission import Recording, load_recording
 from pytpc.static.parameters import DYNAMIC, same_parameter
 from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.study.data import load_mission
+from pytpc_evaluation.study.fix_chains import next_fix
 from pytpc_evaluation.study.methods.ours import tpc_reference
 from pytpc_evaluation.study.suggestion_chains import (
+    FIX_RUNS,
     RANKED,
     RANKED_REFERENCE,
     SUSPECTS,
@@ -35,6 +37,8 @@ def next_try(chain: Chain, out: Path) -> Try:
     Raises:
         InputError: a file of the study is missing or broken.
     """
+    if chain.variant in FIX_RUNS:
+        return next_fix(chain, out)
     if chain.variant in {RANKED, RANKED_REFERENCE}:
         return _ranked(chain, out)
     mission = out / "missions" / chain.mission
@@ -48,8 +52,7 @@ def next_try(chain: Chain, out: Path) -> Try:
             return Try("", None, None, None, reason="no more suspects")
         parameter, node = chain.order[len(chain.tries)], None
     elif chain.tries:
-        # Its flight is that of this chain: the one that _take_in has just read.
-        folder = out / "suggested" / chain.mission
+        folder = out / chain.flown()
         flown = [chain.new, *(one.value for one in chain.tries[:-1] if one.value is not None)]
     if DYNAMIC in parameter:
         return Try(parameter, node, None, None, reason="only the running node knows its name")

@@ -3,7 +3,7 @@
 ``next_round`` takes in what ``pytpc study suggested`` has flown, works out what each chain of tries
 asks for next, and writes
 
-- ``results/suggestions-wanted.json``: the next flights, at most one for each mission;
+- ``results/suggestions-wanted.json``: the next flights;
 - ``results/suggestion-tries.parquet``: every try of every variant;
 - ``results/suggestions.parquet``: the first tries of ``HEADLINE``, one for each mission, flown or
   to be flown;
@@ -16,14 +16,15 @@ flatters), and ``with-reference`` a good run's value. These are told the changed
 right types of the marks, of all users. ``suspects`` is told the types: it tries the first of a
 ranking in turn, each with what the log alone says. ``ranked`` is told nothing: it takes the first
 of the ranking beside a good run, by the marks as they were said, with what the log alone says;
-``ranked-reference`` is the same with the good run's value. What was flown for one chain counts for
-all that want the same.
+``ranked-reference`` is the same with the good run's value. ``fix`` and ``fix-2-runs`` are
+conversations of ``pytpc fix`` (`pytpc_evaluation.study.fix_chains`). What was flown for one chain
+counts for all that want the same.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -37,7 +38,8 @@ from pytpc.base.errors import InputError
 from pytpc_evaluation.study.case import Method
 from pytpc_evaluation.study.data import load_mission
 from pytpc_evaluation.study.dataset import DONE_FILE, STUDY_FILE, load_done
-from pytpc_evaluation.study.plan import Half
+from pytpc_evaluation.study.fix_chains import with_verdict
+from pytpc_evaluation.study.plan import SEEDS, Half, Setting
 from pytpc_evaluation.study.suggested import (
     MOST_FAILURES,
     SUGGESTION_FILE,
@@ -78,6 +80,8 @@ _TRIES = pa.schema(
         ("new_error", pa.bool_()),
         ("reason", pa.string()),
         ("failed", pa.bool_()),
+        ("observer", pa.string()),
+        ("verdict", pa.string()),
     ]
 )
 
@@ -86,7 +90,8 @@ _TRIES = pa.schema(
 class Asked:
     """Which suggestions are asked for.
 
-    ``halves`` are those whose missions are asked about; chains of others stay as they are.
+    ``halves`` and ``seeds`` are those whose missions are asked about; chains of others stay as they
+    are.
     ``method`` is for the chains ``suspects``, of which there are none without it. There are new
     chains for ``variants``. ``again``: their chains in ``halves`` begin anew, because the ranking
     or the advice has changed. What was flown for them is not forgotten.
@@ -95,11 +100,16 @@ class Asked:
     halves: Sequence[Half] = ("tuning",)
     method: Method | None = None
     variants: Sequence[str] = tuple(VARIANTS)
+    seeds: Collection[int] = SEEDS
     again: bool = False
 
     def renews(self, chain: Chain) -> bool:
         """Whether a chain begins anew."""
-        return self.again and chain.variant in self.variants and chain.half in self.halves
+        return self.again and chain.variant in self.variants and self.has(chain.half, chain.seed)
+
+    def has(self, half: Half, seed: int) -> bool:
+        """Whether it is about a mission."""
+        return half in self.halves and seed in self.seeds
 
 
 def next_round(
@@ -122,16 +132,14 @@ def next_round(
         TpcError: a file cannot be written.
     """
     wanted = asked or Asked()
-    before = load_chains(out / CHAINS_FILE)
     failed = load_failed(out)
-    for chain in before:
-        _take_in(chain, out, failed)
-    chains = _chains([one for one in before if not wanted.renews(one)], out, wanted)
+    before = [one for one in load_chains(out / CHAINS_FILE) if not wanted.renews(one)]
+    chains = _chains(before, out, wanted)
     for number, chain in enumerate(chains, start=1):
         while not chain.is_over:
             if not (chain.tries and chain.tries[-1].is_open):
                 chain.tries.append(next_try(chain, out))
-            elif not _is_known(chain, [*chains, *before]):
+            elif not _take_in(chain, out, failed):
                 break
         if on_progress is not None:
             on_progress(number, len(chains))
@@ -139,45 +147,11 @@ def next_round(
     return chains
 
 
-def _is_known(chain: Chain, chains: Sequence[Chain]) -> bool:
-    """Whether the open try of a chain was flown for another one; its result is taken then.
-
-    Not so where the next value comes from the log of that flight, which may not be there any more.
-    """
-    last = chain.tries[-1]
-    goes_on = chain.variant != SUSPECTS and len(chain.tries) < MOST_TRIES.get(chain.variant, 1)
-    for other in chains:
-        if (other.mission, other.digest) != (chain.mission, chain.digest):
-            continue
-        for one in other.tries:
-            if one.is_open or one.value is None or not one.is_same(*_setting(last)):
-                continue
-            if not (goes_on and one.gone is False and not one.failed):
-                chain.tries[-1] = _came(last, one)
-                return True
-    return False
-
-
-def _setting(one: Try) -> tuple[str, str | None, float | None]:
-    return (one.parameter, one.node, one.value)
-
-
-def _came(one: Try, flown: Try) -> Try:
-    """A try with the result of another one with the same value."""
-    return replace(
-        one,
-        gone=flown.gone,
-        new_error=flown.new_error,
-        reason=flown.reason,
-        failed=flown.failed,
-    )
-
-
 def _chains(before: Sequence[Chain], out: Path, asked: Asked) -> list[Chain]:
     """Those of before, and new ones for what was flown or marked since."""
     known = {(one.mission, one.variant): one for one in before}
     for row in _missions(out):
-        if row["half"] not in asked.halves:
+        if not asked.has(row["half"], int(row["seed"])):
             continue
         done = load_done(out / "missions" / _name(row))
         digest = "" if done is None else done.digest
@@ -223,47 +197,40 @@ def _name(row: Mapping[str, Any]) -> str:
     return f"{row['system']}/{row['treatment']}/seed-{row['seed']}"
 
 
-def _take_in(chain: Chain, out: Path, failed: Sequence[Failed]) -> None:
-    """What came of the last try, where its flight stands in the folder, or failed too often."""
-    if not chain.tries or not chain.tries[-1].is_open:
-        return
+def _take_in(chain: Chain, out: Path, failed: Sequence[Failed]) -> bool:
+    """Take in what came of the open try of a chain; whether it was flown, or failed too often."""
     last = chain.tries[-1]
-    flown = _flown(out / "suggested" / chain.mission, chain.digest)
-    if flown is not None and last.is_same(*_setting(flown)):
-        chain.tries[-1] = _came(last, flown)
-        return
+    flown = _flown(out / chain.flown(), chain.digest)
+    if flown is not None:
+        gone, new, errors = flown["gone"], bool(flown["new"]), "; ".join(flown["errors"])
+        chain.tries[-1] = replace(last, gone=gone, new_error=new, reason=errors)
+        if last.fix is not None:
+            chain.tries[-1] = with_verdict(chain, out)
+        return True
     for one in failed:
-        place = (one.mission, one.digest)
-        if place == (chain.mission, chain.digest) and last.is_same(
-            one.parameter, one.node, one.value
-        ):
-            if one.times >= MOST_FAILURES:
-                reason = f"the flight failed {one.times} times: {one.failure}"
-                chain.tries[-1] = replace(last, gone=False, reason=reason, failed=True)
-            return
+        same = Setting(one.parameter, one.node, one.value) == last.setting
+        if same and (one.mission, one.digest) == (chain.mission, chain.digest):
+            if one.times < MOST_FAILURES:
+                return False
+            reason = f"the flight failed {one.times} times: {one.failure}"
+            chain.tries[-1] = replace(last, gone=False, reason=reason, failed=True)
+            return True
+    return False
 
 
-def _flown(folder: Path, digest: str) -> Try | None:
-    """The suggestion that was flown last for a mission; None where there is none of this digest.
+def _flown(folder: Path, digest: str) -> dict[str, Any] | None:
+    """The result of a flight; None where there is none of a mission with this digest.
 
     Raises:
-        InputError: its result cannot be read.
+        InputError: it cannot be read.
     """
     path = folder / SUGGESTION_FILE
     if not (folder / DONE_FILE).is_file() or not path.is_file():
         return None
     flown = parse_json(path)
-    try:
-        if not isinstance(flown, dict):
-            raise TypeError("an object is expected")
-        if flown.get("mission", digest) != digest:
-            return None
-        return Try(
-            flown["parameter"], flown.get("node"), flown["value"], None,
-            flown["gone"], bool(flown["new"]), "; ".join(flown["errors"]),
-        )  # fmt: skip
-    except (KeyError, TypeError) as error:
-        raise InputError(f"not the result of a suggestion: {error}", path) from error
+    if not isinstance(flown, dict) or not {"gone", "new", "errors"} <= flown.keys():
+        raise InputError("not the result of a suggestion", path)
+    return flown if flown.get("mission", digest) == digest else None
 
 
 def _save(chains: Sequence[Chain], out: Path) -> None:
@@ -290,16 +257,19 @@ def _rows(chain: Chain, tries: Sequence[Try]) -> Iterator[dict[str, object]]:
     for number, one in enumerate(tries, start=1):
         # Where nothing is suggested the error stays.
         gone = False if one.value is None else one.gone
-        yield {**head, **asdict(one), "gone": gone, "tries": number}
+        said = {**asdict(one), "verdict": one.verdict}
+        del said["fix"]
+        yield {**head, **said, "gone": gone, "tries": number}
 
 
 def _wanted(chains: Sequence[Chain]) -> Iterator[dict[str, object]]:
-    """The first open try of each mission."""
+    """The open tries, each flight once."""
     seen: set[str] = set()
     for chain in chains:
-        if not chain.tries or not chain.tries[-1].is_open or chain.mission in seen:
+        if not chain.tries or not chain.tries[-1].is_open or chain.flown() in seen:
             continue
-        seen.add(chain.mission)
+        seen.add(chain.flown())
+        *kept, _ = (asdict(one) for one in chain.settings())
         last = chain.tries[-1]
         yield {
             "system": chain.system,
@@ -308,6 +278,7 @@ def _wanted(chains: Sequence[Chain]) -> Iterator[dict[str, object]]:
             "parameter": last.parameter,
             "node": last.node,
             "value": last.value,
+            **({"kept": kept} if kept else {}),
         }
 
 

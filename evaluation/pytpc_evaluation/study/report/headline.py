@@ -9,6 +9,7 @@ from typing import Any
 from pytpc_evaluation.study.data import LABELS
 from pytpc_evaluation.study.metrics import Estimate
 from pytpc_evaluation.study.report.confidence import false_accusations
+from pytpc_evaluation.study.report.conversations import FIX_TARGETS, gone_by_fix
 from pytpc_evaluation.study.report.parts import Part
 from pytpc_evaluation.study.report.positions import Position
 from pytpc_evaluation.study.report.ranked import (
@@ -26,7 +27,13 @@ from pytpc_evaluation.study.report.ranked import (
     top,
 )
 from pytpc_evaluation.study.report.repairs import TARGET, Repair, first_try, gone
-from pytpc_evaluation.study.suggestion_chains import RANKED, RANKED_REFERENCE, Chain
+from pytpc_evaluation.study.suggestion_chains import (
+    FIX_RUNS,
+    MOST_TRIES,
+    RANKED,
+    RANKED_REFERENCE,
+    Chain,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,6 +132,12 @@ def _suggested(repairs: Sequence[Repair], chains: Sequence[Chain], part: Part) -
             name = f"suggestions-{_GONE[clean]}-{variant}-{part.name}"
             text = f"Error {what} with {words}, {part.title}"
             found += _share(name, text, first_try(chains, variant, clean=clean), TARGET)
+    for variant, target in FIX_TARGETS.items():
+        runs = FIX_RUNS[variant]
+        beside = f"beside {runs} good runs" if runs else "by the log alone"
+        text = f"Error gone within {MOST_TRIES[variant]} tries of pytpc fix, {beside}, one observer"
+        share = gone_by_fix(chains, variant)
+        found += _share(f"{variant}-gone-{part.name}", f"{text}, {part.title}", share, target)
     return found
 
 

@@ -22,6 +22,7 @@ from pytpc_evaluation.study.report.confidence import (
     calibration,
     reliability_table,
 )
+from pytpc_evaluation.study.report.conversations import conversations_table
 from pytpc_evaluation.study.report.drawings import Advance, Drawing, draw_results, draw_systems
 from pytpc_evaluation.study.report.folder import FlownMission, FlownStudy, load_study, told
 from pytpc_evaluation.study.report.headline import Headline, headlines
@@ -295,6 +296,7 @@ def _tables(
         changes_table(changed, systems),
         repairs_summary(results.repairs, parts),
         tries_table(results.chains, parts, results.flights),
+        conversations_table(results.chains, parts, results.flights),
         repairs_table(results.repairs),
     ]
     for heading, group in groups_of(systems).items():

@@ -18,7 +18,14 @@ from pytpc_evaluation.study.report.folder import FlownMission
 from pytpc_evaluation.study.report.parts import Part
 from pytpc_evaluation.study.report.positions import ordered
 from pytpc_evaluation.study.report.ranked import percent, verdict_of
-from pytpc_evaluation.study.suggestion_chains import HEADLINE, MOST_TRIES, VARIANTS, Chain, outcomes
+from pytpc_evaluation.study.suggestion_chains import (
+    FIX_RUNS,
+    HEADLINE,
+    MOST_TRIES,
+    VARIANTS,
+    Chain,
+    outcomes,
+)
 from pytpc_evaluation.tables import Cell, Column, Table
 
 TARGET = 0.80
@@ -138,7 +145,7 @@ def tries_table(
     """What came of each variant within so many tries, by part; chains that wait are left out.
 
     Args:
-        chains: of any variants.
+        chains: of any variants; those of ``pytpc fix`` have a table of their own.
         parts: those that are shown.
         flights: see ``chains_in``.
     """
@@ -156,7 +163,8 @@ def tries_table(
     lines: list[tuple[str, tuple[Cell, ...]]] = []
     for part in parts:
         own = chains_in(chains, part, flights)
-        for variant in ordered((chain.variant for chain in own), list(VARIANTS)):
+        others = (chain.variant for chain in own if chain.variant not in FIX_RUNS)
+        for variant in ordered(others, list(VARIANTS)):
             for most in range(1, MOST_TRIES.get(variant, 1) + 1):
                 found, waiting = outcomes(own, variant, most)
                 if not found and not waiting:
