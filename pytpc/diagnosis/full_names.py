@@ -12,7 +12,7 @@ comparison of its own here, with the name that it has read.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -31,6 +31,7 @@ from pytpc.static.parameters import (
     of_instance,
     resolved,
     same_parameter,
+    without_object,
 )
 from pytpc.static.static_info import StaticInfo
 
@@ -53,7 +54,8 @@ def with_full_names(
     nodes share the comparison, or if none has reported it. A name that several objects read under
     different full names stays if it is not known which of them evaluated the comparison. A
     comparison with a parameter that is not set is left out if the same comparison is also known
-    under one that is: an older name of it.
+    under one that is: an older name of it. Names with an unknown part that mean the same parameters
+    of the server, as they are read on several ways, become one of them.
 
     Args:
         static_info: of the build.
@@ -63,11 +65,38 @@ def with_full_names(
             is not given.
     """
     names = _Names(recording, values, recording.nodes_of if nodes_of is None else nodes_of)
-    units = tuple(_renamed(unit, names) for unit in static_info.units)
+    units = _one_name_each([_renamed(unit, names) for unit in static_info.units], values)
     if all(new is old for new, old in zip(units, static_info.units, strict=True)):
         return static_info
     new = replace(static_info, units=units)
     return replace(new, set_aside=frozenset(static_info.comparisons) - frozenset(new.comparisons))
+
+
+def _one_name_each(units: Sequence[LinkUnit], values: Mapping[str, object]) -> tuple[LinkUnit, ...]:
+    """The units, in which names that mean the same parameters of the server are the same."""
+    sources = {one.source for unit in units for one in unit.comparisons if one.source is not None}
+    alike = defaultdict(list)
+    for source in sorted(sources, key=lambda name: (name.count(DYNAMIC), len(name), name)):
+        if DYNAMIC in source and source != DYNAMIC and without_object(source) == source:
+            meant = frozenset(name for name in values if same_parameter(name, source))
+            if meant:
+                alike[meant].append(source)
+    names = {source: first for first, *rest in alike.values() for source in rest}
+    if not names:
+        return tuple(units)
+    return tuple(
+        replace(
+            unit,
+            comparisons=tuple(
+                replace(one, source=names[one.source]) if one.source in names else one
+                for one in unit.comparisons
+            ),
+            parameters=tuple(
+                replace(one, name=names.get(one.name, one.name)) for one in unit.parameters
+            ),
+        )
+        for unit in units
+    )
 
 
 @dataclass(frozen=True)

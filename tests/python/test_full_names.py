@@ -54,6 +54,22 @@ def test_a_reported_name_replaces_what_is_not_known():
     assert found.units[0].parameters[0].name == "/move_base/local/radius"
 
 
+# A layer reads it with the handle of the costmap, and its buffer with that of the layer.
+def test_names_that_mean_the_same_parameters_become_one():
+    far, near = "~<dynamic>/<dynamic>/height", "~<dynamic>/height"
+    given = static(
+        comparison(1, far), comparison(2, near), comparison(3, "~<dynamic>/width"),
+        reads=[read_at(3, far), read_at(4, near)],
+    )  # fmt: skip
+    values = {f"/move_base/{one}/layer/height": 2.0 for one in ("global", "local")}
+    rows = [(t, n, 0, 1, 2) for t in (1, 2) for n in (1, 2, 3)]
+    found = with_full_names(given, mission(rows), {**values, "/move_base/local/width": 3.0})
+    assert sources(found)[:2] == [near, near]
+    assert {read.name for read in found.units[0].parameters} == {near}
+    # Nothing is known of the parameters without the server.
+    assert with_full_names(given, mission(rows), {}) is given
+
+
 def test_two_objects_with_names_of_their_own_leave_it_open():
     given = static(comparison(1, "<dynamic>/radius"), reads=[read_at(3, "<dynamic>/radius")])
     other = replace(NAMED, name="/move_base/global/radius")

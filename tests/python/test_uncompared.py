@@ -6,9 +6,12 @@ import json
 from dataclasses import replace
 
 import pytest
+from mission_samples import comparison, link_unit
 from test_differences import (
+    FACES,
     GOOD,
     MARKS,
+    READS,
     STATIC,
     asked,
     flight,
@@ -23,6 +26,7 @@ from pytpc.diagnosis.differences import RunValues, changes_of, differences
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.results.suspects import Uncompared
 from pytpc.recording.parameter_values import SetValue
+from pytpc.static.static_info import StaticInfo
 
 
 def told(bad, *good):
@@ -92,6 +96,29 @@ def test_a_text_is_a_suspect_without_a_value_to_try():
     assert advice.remedy.value is None
     assert advice.remedy.reason == "it was map in the good run"
     assert found.action == ""
+
+
+# Its comparison reports its length, 5 in both runs; the text is another one.
+def test_a_text_of_the_same_length_is_no_text_that_was_kept():
+    compared = StaticInfo.of([link_unit([FACES, comparison(1, "~frame")], READS)])
+    good = RunValues("good", flight(5, 5.0), values(faces=5, frame="odoms"))
+    recording = replace(flight(12, 5.0), marks=MARKS)
+    bad = RunValues("bad", recording, values(faces=12, frame="world"))
+    found = differences(bad, [good], compared)
+    changes = changes_of(found)
+    asked = Question(references=[good.recording], differences=found, changes=changes)
+    frame = odds(diagnose_mission(recording, compared, asked))["~frame"]
+    asked = replace(asked, changes=[one for one in changes if one.parameter != "/uav/frame"])
+    kept = odds(diagnose_mission(recording, compared, asked))["~frame"]
+    assert frame > 100 * kept
+
+
+def test_the_value_of_a_text_is_not_what_its_comparison_reports():
+    compared = StaticInfo.of([link_unit([FACES, comparison(1, "~frame")], READS)])
+    good = RunValues("good", flight(5, 5.0), values(faces=5))
+    bad = RunValues("bad", flight(5, 5.0), values(faces=5, frame="world"))
+    (one,) = differences(bad, [good], compared).found
+    assert (one.name, one.good.value, one.bad.value) == ("~frame", None, "world")
 
 
 def test_every_output_shows_it(tmp_path):

@@ -146,7 +146,11 @@ def _by_values(
         old = before_changes(static_info, reversed(changes))
         found.append(KnownGood(of_changes(tpcs.names, changes), old))
     if references:
-        found.append(of_references(static_info, tpcs, here, list(map(with_summarised, references))))
+        known = of_references(static_info, tpcs, here, list(map(with_summarised, references)))
+        # A text gives thresholds (its length, for example) that another text may give, too.
+        texts = [one for one in changes if math.isnan(one.old) or math.isnan(one.new)]
+        is_text = of_changes(tpcs.names, texts) == 0.0
+        found.append(known._replace(prior=np.where(is_text, np.nan, known.prior)))
     if found:
         prior = np.fmin.reduce([one.prior for one in found])
         prior[np.isnan(prior)] = UNCHANGED / 2
