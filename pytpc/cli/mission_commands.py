@@ -51,6 +51,8 @@ _WITH_SUMMARIES = (
     "reports include summaries, of which each stands for many evaluations;"
     " TPC_POLICY=every reports them one by one"
 )
+_IN_FILES = "TPC_SINK=file TPC_POLICY=light TPC_PROCESS_CAP=0"
+"""Files cost a node less than messages, so that its changes need no cap for all of them."""
 
 
 @dataclass(frozen=True)
@@ -308,10 +310,11 @@ def show_run(run: MissionRun, output: Path, *, launched: bool, marks: int | None
     dropped = sum(each.count for each in run.dropped)
     if dropped:
         places = len({each.key for each in run.dropped})
+        kept = "" if run.files else f"; {_IN_FILES} keeps more"
         say(
             f"warning: {many(dropped, 'report')} of {many(places, 'comparison')} never left"
             f" {many(len({each.node for each in run.dropped}), 'node')}:"
-            f" {output / RUN_FILE} has them",
+            f" {output / RUN_FILE} has them{kept}",
         )
     if not run.params.is_file():
         why = "the parameter server did not answer"
