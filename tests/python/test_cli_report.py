@@ -56,7 +56,7 @@ def text_of(page):
 def mark(seconds, kind):
     """A mark as all commands print it; the recording begins at 1 s."""
     time_ns = round((seconds + 1) * 1e9)
-    said = {"observer": "", "note": "", "where": []}
+    said = {"observer": "", "note": "", "where": [], "began": None}
     return {"time_ns": time_ns, "seconds": seconds, "type": kind, **said}
 
 
