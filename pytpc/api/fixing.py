@@ -44,7 +44,8 @@ class Proposal:
 
     ``beyond`` says why the value leaves the known range; empty if it does not. ``origin`` is where
     the present value came from, None if that is not known. ``effect`` is what the value would have
-    changed in the recorded mission.
+    changed in the recorded mission. ``place`` is where the parameter is compared, or what else is
+    known of it if it is not ``is_compared``.
     """
 
     would_be: FixTry
@@ -52,6 +53,7 @@ class Proposal:
     place: str
     beyond: str
     origin: Origin | None
+    is_compared: bool = True
 
 
 @dataclass(frozen=True)
@@ -129,6 +131,9 @@ class Conversation:
             return None
         # The log says nothing about a further value, but the last step helped.
         asked, advice = offered[-1]
+        if isinstance(advice.accused, Uncompared):
+            # Nor does anything say how far it may go.
+            return None
         onward = search.onward(whole=isinstance(advice.remedy.current, int))
         if onward is None:
             return None
@@ -167,6 +172,8 @@ class Conversation:
         node = "" if compared is None else compared.last.node.partition(" ")[0]
         name, origin = name_on_robot(mission, found.parameter, node)
         changed = _changed_as(found, asked.question)
+        if isinstance(accused, Uncompared) and accused.difference.parameter.startswith("/"):
+            changed = accused.difference.parameter
         if changed:
             name, origin = changed, read_origins(mission).get(changed, origin)
         standing = [one for one in tries if not one.undone]
@@ -195,6 +202,7 @@ class Conversation:
             _acts_at(accused),
             beyond(found.value, known, declared, found.doubt),
             origin,
+            compared is not None,
         )
 
 

@@ -122,7 +122,8 @@ def show_proposal(proposal: Proposal, how: Setting) -> None:
     click.echo(plain(f"try: {how.name} {show(found.old)} -> {exact(found.new)}"))
     click.echo(plain(f"  {percent(found.probability)} that it is {found.parameter}"))
     node = f" in {found.node}" if found.node else ""
-    for line in (found.text, f"compared{node} at {proposal.place}", proposal.effect):
+    place = f"compared{node} at {proposal.place}" if proposal.is_compared else proposal.place
+    for line in (found.text, place, proposal.effect):
         if line:
             click.echo(plain(f"  {line}"))
     if how.change is None:

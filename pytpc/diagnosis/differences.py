@@ -281,6 +281,9 @@ def _reported(
         now = value_in(bad.recording, known.static_info, parameter)
         runs = [value_in(run.recording, known.static_info, parameter) for run in good]
         then = next((value for value in reversed(runs) if value is not None), None)
+        if now is None and then is None:
+            # Its thresholds are worked out from more than the parameter, which may be as it was.
+            continue
         found.append(_difference(parameter, SetValue(then), SetValue(now), (bad, known)))
     return found
 

@@ -76,10 +76,16 @@ def _one_name_each(units: Sequence[LinkUnit], values: Mapping[str, object]) -> t
     """The units, in which names that mean the same parameters of the server are the same."""
     sources = {one.source for unit in units for one in unit.comparisons if one.source is not None}
     alike = defaultdict(list)
-    for source in sorted(sources, key=lambda name: (name.count(DYNAMIC), len(name), name)):
-        if DYNAMIC in source and source != DYNAMIC and without_object(source) == source:
-            meant = frozenset(name for name in values if same_parameter(name, source))
-            if meant:
+    by_end = defaultdict(list)
+    for name in values:
+        by_end[name.rpartition("/")[2]].append(name)
+    # The most exact one first.
+    for source in sorted(sources, key=lambda name: (-len(name.replace(f"{DYNAMIC}/", "")), name)):
+        end = source.rpartition("/")[2]
+        if DYNAMIC in source and DYNAMIC not in end and without_object(source) == source:
+            meant = frozenset(name for name in by_end[end] if same_parameter(name, source))
+            # One alone may be another parameter of that name, and this one have its default.
+            if len(meant) > 1:
                 alike[meant].append(source)
     names = {source: first for first, *rest in alike.values() for source in rest}
     if not names:

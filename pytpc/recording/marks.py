@@ -43,12 +43,14 @@ _SNIFFED = 256
 _PART = "[A-Za-z0-9_]+"
 _NAME = rf"(?:(?:~/?|/){_PART}|[A-Za-z_][A-Za-z0-9_]*)(?:/{_PART})*"
 _LONGEST_PLACE = 255
+_ENDS = ",.;:)"
 # A whole word, of which the name is the first group.
 _PLACE = re.compile(rf"(?<!\S)@(?!\S{{{_LONGEST_PLACE + 1}}})({_NAME})[,.;:)]*(?!\S)")
-_AGO = r"-(\d{1,6}(?:\.\d{1,3})?)"
+_NUMBER = r"(\d{1,6}(?:\.\d{1,3})?)"
 # How many seconds before the mark the error began: @-12, or from when to when: @-20..-5.
-_BEGAN = re.compile(rf"(?<!\S)@{_AGO}(?:\.\.{_AGO})?(?!\S)", re.ASCII)
-_SECONDS = r"(\d{1,6}(?:\.\d{1,3})?)\s*s?"
+_BEGAN = re.compile(rf"(?<!\S)@-{_NUMBER}(?:(?:\.\.-?|-){_NUMBER})?[{_ENDS}]*(?!\S)", re.ASCII)
+_MOST_SECONDS = 999_999.0
+_SECONDS = rf"{_NUMBER}\s*s?"
 _TYPED = re.compile(rf"{_SECONDS}(?:\s*(?:-|\.\.|to)\s*{_SECONDS})?", re.ASCII)
 
 
@@ -133,7 +135,7 @@ def with_where(note: str, where: Iterable[str]) -> str:
     'too fast'
     """
     began = _BEGAN.search(note)
-    before = "" if began is None else f"{began[0]} "
+    before = "" if began is None else f"{began[0].rstrip(_ENDS)} "
     for name in tuple(dict.fromkeys(where))[:MOST_PLACES]:
         if len(before) + len(name) + 1 <= LONGEST_NOTE:
             before += f"@{name} "
@@ -149,7 +151,8 @@ def with_began(note: str, early_s: float, late_s: float) -> str:
     >>> with_began("", 12.04, 12.04)
     '@-12'
     """
-    first, last = (f"{max(0.0, one):.1f}".removesuffix(".0") for one in (early_s, late_s))
+    ends = (min(max(0.0, one), _MOST_SECONDS) for one in (early_s, late_s))
+    first, last = (f"{one:.1f}".removesuffix(".0") for one in ends)
     word = f"@-{first}" if first == last else f"@-{first}..-{last}"
     return _after(f"{word} ", _BEGAN.sub("", note).strip())
 

@@ -11,6 +11,7 @@ from pytpc.diagnosis.ranking.known_good import (
     BETWEEN,
     DEFAULT,
     UNCHANGED,
+    KnownGood,
     of_change,
     of_changes,
     of_defaults,
@@ -432,7 +433,7 @@ def test_a_default_that_is_kept_in_a_float_is_the_same():
 def test_a_prior_moves_the_order():
     names = Tpcs.of(STATIC).names
     prior = np.where([name == "~safe" for name in names], 20.0, 0.0)
-    found = diagnose_replayed(recording(gate_case(), marks(33)), STATIC, prior, {})
+    found = diagnose_replayed(recording(gate_case(), marks(33)), STATIC, KnownGood(prior, {}))
     assert first(found) == "~safe"
 
 

@@ -150,8 +150,11 @@ def test_a_note_with_places_has_these(note: str, names: list[str]):
         ("@-20..-5 too fast", (20.0, 5.0)),
         ("@/cmd_vel @-12.5 slow", (12.5, 12.5)),
         ("from @-3..-8", (8.0, 3.0)),
+        # As people type it.
+        ("@-5, too fast", (5.0, 5.0)),
+        ("@-20-5 @-20..5: late.", (20.0, 5.0)),
         # Not a word of its own, and no number of seconds.
-        ("x@-20 @-20..5 @-1..-2..-3 @-1e3 @-٣ @20", None),
+        ("x@-20 @-1..-2..-3 @-1e3 @-٣ @20", None),
         ("@-1234567", None),
     ],
 )
@@ -180,6 +183,8 @@ def test_place_and_time_do_not_replace_one_another():
     assert with_began(note, 12, 12) == "@-12 @/odom drifts"
     assert Mark(1, "I", "", note).remark == "drifts"
     assert len(with_began("x" * 600, 20, 5)) == LONGEST_NOTE
+    assert Mark(1, "I", "", with_began("", 1e9, 0)).began == (999_999.0, 0.0)
+    assert with_where("@-5, too fast", ["/tf"]) == "@-5 @/tf too fast"
 
 
 # The bag has the note of before, and the file beside it that with the place.

@@ -11,6 +11,7 @@ from pytpc.diagnosis.ranking.known_good import (
     SET_ANEW,
     UNCHANGED,
     Instead,
+    KnownGood,
     Moved,
     before_changes,
     of_good_run,
@@ -21,6 +22,7 @@ from pytpc.diagnosis.ranking.other_values import diagnose_beside, diagnose_repla
 from pytpc.diagnosis.ranking.replayed_outcomes import ACQUITTED, UNKNOWN_CHARGE, replayed, turns
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.scores.score_tables import Tpcs
+from pytpc.diagnosis.thresholds.units import added_by
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
 from pytpc.recording.parameter_change import Change
@@ -91,7 +93,48 @@ def test_old_values_become_thresholds_in_their_own_unit():
         Change("~height", "", 1.5, math.nan),
         Change("~unknown", "", 1.0, 2.0),
     ]
-    assert before_changes(STATIC, changes) == {key(3): Instead(9.0, 7.0), key(0): 1.5}
+    assert before_changes(STATIC, changes) == {key(3): Instead(((9.0, 7.0),)), key(0): 1.5}
+
+
+# It was 5, then 8, and is 12: the log has 12, and 5 is what worked.
+def test_of_several_changes_the_first_old_and_the_last_new_value_count():
+    changes = [Change("/n/height", "", 5.0, 8.0), Change("/n/height", "", 8.0, 12.0)]
+    assert before_changes(STATIC, changes) == {key(0): Instead(((12.0, 5.0),))}
+
+
+# Two nodes run the code, and both values were changed.
+@pytest.mark.parametrize("way", [1, -1])
+def test_changes_of_two_nodes_are_both_replayed(way):
+    changes = [Change("/a/height", "", 4.0, 5.0), Change("/b/height", "", 12.0, 9.0)]
+    (other,) = before_changes(STATIC, changes[::way]).values()
+    assert other_thresholds(np.array([5.0, 9.0]), other).tolist() == [4.0, 12.0]
+
+
+def test_a_value_that_was_not_set_gives_no_threshold():
+    least = Transform("expression", text="min(3, x)", tree=("min", 3.0, "x"))
+    static = static_info(comparison(0, "~height", transform=least))
+    assert before_changes(static, [Change("~height", "", math.nan, 2.0)]) == {}
+
+
+@pytest.mark.parametrize(
+    ("text", "slope"),
+    [
+        ("x + start", 1.0),
+        ("this->last_ + 1000 * x", 1000.0),
+        ("now - (x / 2 + ros::begin)", -0.5),
+        ("-x", -1.0),
+        ("scale * x + start", None),
+        ("x * x", None),
+        ("y + 1", None),
+        ("1e400 * x", None),
+        ("x - x", None),
+        ("-" * 200_000 + "x", None),
+        ("x +", None),
+        ("x[] + 1", None),
+    ],
+)
+def test_how_far_a_threshold_moves_with_its_parameter(text, slope):
+    assert added_by(comparison(0, "~a", transform=Transform("expression", text=text))) == slope
 
 
 # x + start: nobody knows where it started, but with 5 in place of 2 it is 3 more.
@@ -106,17 +149,27 @@ def test_a_threshold_to_which_the_parameter_is_added_moves_with_it():
 
 # Two costmaps run the same code, one with a width of 6 and one with 9: the first had 5 before.
 def test_only_evaluations_with_the_changed_value_are_replayed():
-    other = other_thresholds(np.array([6.0, 9.0, 6.0]), Instead(6.0, 5.0))
+    other = other_thresholds(np.array([6.0, 9.0, 6.0]), Instead(((6.0, 5.0),)))
     assert other[[0, 2]].tolist() == [5.0, 5.0]
     assert math.isnan(other[1])
     rows = [(t, 0, limit < 5.5, 5.5, limit) for t in range(0, 60, 2) for limit in (6, 9)]
     rows += [(t, 1, 0, 0, 1) for t in range(100)]
-    found = replayed(recording(rows, 70), STATIC, {key(0): Instead(9.0, 8.0)})
+    found = replayed(recording(rows, 70), STATIC, {key(0): Instead(((9.0, 8.0),))})
     assert found["~height"] == ACQUITTED
-    assert replayed(recording(rows, 70), STATIC, {key(0): Instead(6.0, 5.0)})["~height"] > ACQUITTED
+    assert (
+        replayed(recording(rows, 70), STATIC, {key(0): Instead(((6.0, 5.0),))})["~height"]
+        > ACQUITTED
+    )
     # Nothing was evaluated with that value, so nobody knows.
-    gone = replayed(recording(rows, 70), STATIC, {key(0): Instead(7.0, 5.0)})
+    gone = replayed(recording(rows, 70), STATIC, {key(0): Instead(((7.0, 5.0),))})
     assert gone == {"~height": UNKNOWN_CHARGE}
+
+
+# The second comparison is known to be as it was.
+def test_what_kept_its_threshold_has_done_nothing():
+    static = static_info(comparison(0, "~gate"), comparison(1, "~gate"))
+    rows = [(t, n, 0, 1.0, 3.0) for t in range(50) for n in range(2)]
+    assert replayed(recording(rows, 40), static, {key(0): 9.0}, {key(1)}) == {"~gate": ACQUITTED}
 
 
 # With 9 instead of 3 gate's first comparison would not have turned; of the second nothing is known.
@@ -187,14 +240,14 @@ def test_the_replay_decides_among_what_differs():
     rows, others = mission(), {key(0): 4.0, key(2): 8.0}
     names = Tpcs.of(STATIC).names
     prior = np.where([name in ("~height", "~range") for name in names], 0.0, UNCHANGED)
-    found = diagnose_replayed(recording(rows, 36, 38), STATIC, prior, others)
+    found = diagnose_replayed(recording(rows, 36, 38), STATIC, KnownGood(prior, others))
     assert [found.names[n] for n in found.order] == ["~height", "~range", "~speed"]
     assert found.posterior.sum() + found.none == pytest.approx(1.0)
     assert found.posterior[names.index("~height")] > 0.5
 
 
 def test_without_marks_nobody_is_charged():
-    found = diagnose_replayed(recording(mission()), STATIC, np.zeros(4), {key(0): 4.0})
+    found = diagnose_replayed(recording(mission()), STATIC, KnownGood(np.zeros(4), {key(0): 4.0}))
     assert (found.order, found.none) == ([], 1.0)
 
 

@@ -206,7 +206,7 @@ def test_a_program_that_ran_only_in_the_mission_is_other_code():
     code = differences(bad, [good], static).code
     assert code == CodeComparison("monday", (), ("robot/late",))
     assert code.line == (
-        "the code is not that of the good run monday: robot/late reported only now"
+        "the code is that of the good run monday, but robot/late reported only now"
     )
     assert differences(replace(bad, recording=flight()), [good], static).code.is_same
 

@@ -68,6 +68,15 @@ def test_what_no_analysed_node_reads_is_less_likely_than_what_one_reads():
     assert found["~radius"] > 10 * found["/uav/extra"] > 0
 
 
+# Thousands of parameters of a robot that is not analysed do not silence a verdict.
+def test_what_nobody_reads_has_one_share_together():
+    more = {f"p{number}": 2 for number in range(500)}
+    good = replace(GOOD, values={**GOOD.values, **{f"/uav/{name}": 1 for name in more}})
+    found = odds(told(bad_run(faces=12, **more), good))
+    assert found["~faces"] > 0.8
+    assert sum(found[f"/uav/{name}"] for name in more) < 0.1
+
+
 # ~radius has its default, as it was set under a name that nobody reads.
 def test_a_misspelt_name_is_as_likely_as_what_is_read():
     good = replace(GOOD, values=values(faces=5, coverage=0.6, extra=1))
@@ -146,7 +155,12 @@ def test_fix_takes_the_value_of_the_good_run(tmp_path):
     state = tmp_path / "fix.json"
     result = asked("fix", bad, "--static", static, "--reference", good, "-o", state)
     assert "~radius" in result.stdout, result.output
-    assert "0.42 -> 0.17" in result.stdout
+    assert "/uav/radius 0.42 -> 0.17" in result.stdout
+    assert "  read at src/node.cpp:5, compared nowhere" in result.stdout.splitlines()
+    words = ("-o", state, "--static", static, "--reference", good)
+    assert asked("fix", bad, *words, "--yes").exit_code == 0
+    # Nothing says how much further it may go.
+    assert "~radius" not in asked("fix", bad, *words, "--say", "better").stdout.split("try:")[-1]
 
 
 def test_without_a_good_run_nothing_is_added():

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -55,10 +56,9 @@ class Moved(NamedTuple):
 
 
 class Instead(NamedTuple):
-    """The other threshold ``then`` where it is ``now``; other objects may have another one."""
+    """For thresholds now the other ones, as pairs; other objects and nodes may have other ones."""
 
-    now: float
-    then: float
+    pairs: tuple[tuple[float, float], ...]
 
 
 Other: TypeAlias = "float | Moved | Instead"
@@ -70,35 +70,51 @@ def other_thresholds(thresholds: Floats, other: Other) -> Floats:
     if isinstance(other, Moved):
         return thresholds + other.by
     if isinstance(other, Instead):
-        same = np.isclose(thresholds, other.now, rtol=_CLOSE, atol=0.0)
-        return np.where(same, other.then, np.nan)
+        found = np.full(thresholds.size, np.nan)
+        for now, then in other.pairs:
+            found[np.isclose(thresholds, now, rtol=_CLOSE, atol=0.0)] = then
+        return found
     return np.full(thresholds.size, other)
 
 
 class KnownGood(NamedTuple):
     """``prior`` float64[p] are the log odds of each parameter; nan where nothing is known of it.
 
-    ``others`` is the other threshold of each comparison whose parameter differs, by key.
+    ``others`` is the other threshold of each comparison whose parameter differs, by key; ``same``
+    are the keys of those whose threshold is known to be as it was.
     """
 
     prior: Floats
     others: Mapping[str, Other]
+    same: frozenset[str] = frozenset()
 
 
 def before_changes(static_info: StaticInfo, changes: Iterable[Change]) -> dict[str, Other]:
     """The threshold that each comparison, by its key, has with the old values.
 
     Comparisons of text, and those with an unknown way from parameter to threshold, are left out.
+
+    Args:
+        static_info: what the analysis found.
+        changes: the newest last. Of a parameter that was changed several times, the first value is
+            the old one, and the last value the one that it has now.
     """
+    joined: dict[str, Change] = {}
+    for change in changes:
+        first = joined.get(change.parameter, change)
+        joined[change.parameter] = replace(change, old=first.old)
     found: dict[str, Other] = {}
     named = [(key, one) for key, one in static_info.thresholds.items() if one.source is not None]
     every = ByParameter(named, lambda item: item[1].source or "")
-    for change in changes:
+    for change in joined.values():
         for key, comparison in every.meant(change.parameter):
             now, then = (_threshold(static_info, key, v) for v in (change.new, change.old))
             factor = added_by(comparison)
+            before = found.get(key)
             if not math.isnan(then):
-                found[key] = then if math.isnan(now) else Instead(now, then)
+                # Nodes with values of their own may run the same code.
+                pairs = before.pairs if isinstance(before, Instead) else ()
+                found[key] = then if math.isnan(now) else Instead((*pairs, (now, then)))
             elif factor is not None and math.isfinite(change.old - change.new):
                 found[key] = Moved(factor * (change.old - change.new))
     return found
@@ -120,7 +136,7 @@ def _tree(static_info: StaticInfo, key: str) -> Tree | None:
 
 def _threshold(static_info: StaticInfo, key: str, value: float) -> float:
     """That of a comparison with this value of its parameter; nan if the way there is not known."""
-    tree = _tree(static_info, key)
+    tree = None if math.isnan(value) else _tree(static_info, key)
     return math.nan if tree is None else evaluate(tree, value)
 
 
@@ -154,6 +170,7 @@ def of_references(
     there = [thresholds_of(one, tpcs) for one in references]
     prior: dict[str, float] = {}
     others: dict[str, Other] = {}
+    same: set[str] = set()
     for code, name in enumerate(tpcs.parameters):
         key, now = tpcs.keys[code], float(here[code])
         known = [float(one[code]) for one in there if not math.isnan(one[code])]
@@ -164,9 +181,11 @@ def of_references(
         least = BETWEEN if is_between else 0.0
         kept = min(least, *(of_change(then, now) for then in known))
         prior[name] = max(prior.get(name, UNCHANGED), kept)
-        if kept != UNCHANGED:
+        if kept == UNCHANGED:
+            same.add(key)
+        else:
             others[key] = min(known, key=lambda then: (abs(then - now), then))
-    return KnownGood(_by_name(tpcs, prior), others)
+    return KnownGood(_by_name(tpcs, prior), others, frozenset(same))
 
 
 def of_defaults(static_info: StaticInfo, tpcs: Tpcs, events: Events) -> KnownGood:
@@ -174,6 +193,7 @@ def of_defaults(static_info: StaticInfo, tpcs: Tpcs, events: Events) -> KnownGoo
     here = thresholds_of(events, tpcs)
     prior: dict[str, float] = {}
     others: dict[str, Other] = {}
+    same: set[str] = set()
     for code, (key, name) in enumerate(zip(tpcs.keys, tpcs.parameters, strict=True)):
         now, default = float(here[code]), static_info.comparisons[key].default
         if math.isnan(now) or default is None or isinstance(default, str):
@@ -184,11 +204,13 @@ def of_defaults(static_info: StaticInfo, tpcs: Tpcs, events: Events) -> KnownGoo
             continue
         if math.isnan(then):
             continue
-        same = math.isclose(then, now, rel_tol=_CLOSE)
-        prior[name] = max(prior.get(name, DEFAULT), DEFAULT if same else 0.0)
-        if not same:
+        kept = math.isclose(then, now, rel_tol=_CLOSE)
+        prior[name] = max(prior.get(name, DEFAULT), DEFAULT if kept else 0.0)
+        if kept:
+            same.add(key)
+        else:
             others[key] = then
-    return KnownGood(_by_name(tpcs, prior), others)
+    return KnownGood(_by_name(tpcs, prior), others, frozenset(same))
 
 
 def of_settings(static_info: StaticInfo, tpcs: Tpcs, events: Events) -> KnownGood:

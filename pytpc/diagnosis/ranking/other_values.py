@@ -7,7 +7,7 @@ changed; both are joined here with what the log says alone (`posterior`).
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,7 +17,6 @@ from pytpc.diagnosis.ranking.known_good import (
     DEFAULT,
     UNCHANGED,
     KnownGood,
-    Other,
     before_changes,
     of_changes,
     of_defaults,
@@ -142,8 +141,7 @@ def _by_values(
     anew = of_settings(static_info, tpcs, here)
     found: list[KnownGood] = []
     if changes:
-        # The last value for a parameter counts.
-        old = before_changes(static_info, reversed(changes))
+        old = before_changes(static_info, changes)
         found.append(KnownGood(of_changes(tpcs.names, changes), old))
     if references:
         known = of_references(static_info, tpcs, here, list(map(with_summarised, references)))
@@ -165,7 +163,8 @@ def _by_values(
     kept = found[0].prior == UNCHANGED if changes else np.zeros(prior.size, np.bool_)
     prior = np.where(np.isnan(anew.prior) | kept, prior, anew.prior)
     others = {key: value for one in (*found, anew) for key, value in one.others.items()}
-    return diagnose_replayed(recording, static_info, prior, others, none_score)
+    same = frozenset(key for one in found for key in one.same) - others.keys()
+    return diagnose_replayed(recording, static_info, KnownGood(prior, others, same), none_score)
 
 
 def _unknown(prior: Floats) -> float:
@@ -178,8 +177,7 @@ def _unknown(prior: Floats) -> float:
 def diagnose_replayed(
     recording: Recording,
     static_info: StaticInfo,
-    prior: Floats,
-    others: Mapping[str, Other],
+    known: KnownGood,
     none_score: float = NOBODY,
 ) -> Posterior:
     """The diagnosis of `pytpc.diagnosis.ranking.posterior` with what the replay says.
@@ -187,14 +185,14 @@ def diagnose_replayed(
     Args:
         recording: the mission with its marks.
         static_info: what the analysis found.
-        prior: float64[p], see `pytpc.diagnosis.ranking.known_good`.
-        others: the other thresholds that are known, by the key of the comparison.
+        known: the prior, without a nan, and the other thresholds.
         none_score: that of "none of them".
     """
     alone = diagnose_log(recording, static_info)
     if not np.isfinite(alone.scores).any():
         return alone
-    found = replayed(recording, static_info, others)
+    prior = known.prior
+    found = replayed(recording, static_info, known.others, known.same)
     charges = np.array([found.get(name, math.nan) for name in alone.names])
     # What kept its value, or its default, has no other threshold.
     unknown = np.where(prior > DEFAULT, UNKNOWN_CHARGE, 0.0)

@@ -21,7 +21,7 @@ whose other value turns nothing before the marks is acquitted.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 import numpy as np
 
@@ -59,7 +59,10 @@ against them as this charge is."""
 
 
 def replayed(
-    recording: Recording, static_info: StaticInfo, others: Mapping[str, Other]
+    recording: Recording,
+    static_info: StaticInfo,
+    others: Mapping[str, Other],
+    same: Collection[str] = (),
 ) -> dict[str, float]:
     """What speaks against the parameters whose comparisons are replayed, in log odds.
 
@@ -67,6 +70,7 @@ def replayed(
         recording: with its marks, at least one.
         static_info: what the analysis found.
         others: the other threshold of each comparison to replay.
+        same: comparisons that are known to have had the same threshold.
 
     Returns:
         By the parameter's name, for those with such a threshold; the worst of the comparisons
@@ -83,7 +87,8 @@ def replayed(
     for stream in streams.streams:
         key, name = tpcs.keys[stream.code], tpcs.names[stream.column]
         if key not in others:
-            unknown.add(name)
+            if key not in same:
+                unknown.add(name)
             continue
         other = other_thresholds(stream.thresh, others[key])
         if np.isnan(other).all():

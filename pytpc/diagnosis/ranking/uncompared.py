@@ -8,6 +8,7 @@ nor badly.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -23,8 +24,9 @@ from pytpc.recording.mission import Recording
 from pytpc.recording.parameter_values import ParameterValues
 
 READ_BY_NOBODY = -3.0
-"""The log odds of a parameter that no analysed node reads: one that was not analysed may. Not of
-one whose name is like one that a node reads and nobody set: a misspelt name leaves a default."""
+"""The log odds of all parameters together that no analysed node reads: one that was not analysed
+may, and a robot may have thousands of them. Not of one whose name is like one that a node reads and
+nobody set: a misspelt name leaves a default."""
 
 
 class Silent(NamedTuple):
@@ -59,24 +61,30 @@ def with_uncompared(
     level = found.scores[order[0]] - math.log(found.posterior[order[0]]) if order else 0.0
     plain = REPLAYED * UNKNOWN_CHARGE - ALONE * math.log(max(len(order), 1))
     base = level if order else nobody(differences) - math.log(found.none)
-    odds = [
-        math.exp(plain + _prior(one) + _set_anew(one, recording, streams) - base) for one in silent
-    ]
+    values = ParameterValues(recording.values)
+    unread = sum(_is_unread(one) for one in silent)
+    odds = []
+    for one in silent:
+        score = plain + _set_anew(values.history(one.parameter), recording, streams)
+        if _is_unread(one):
+            score += READ_BY_NOBODY - math.log(unread)
+        odds.append(math.exp(score - base))
     left = 1.0 / (1.0 + sum(odds))
     named = [Silent(one, left * each) for one, each in zip(silent, odds, strict=True)]
     return left, tuple(sorted(named, key=lambda one: (-one.probability, one.difference.name)))
 
 
-def _prior(one: Difference) -> float:
-    return READ_BY_NOBODY if one.state is None and not one.alike else 0.0
+def _is_unread(one: Difference) -> bool:
+    return one.state is None and not one.alike
 
 
-def _set_anew(one: Difference, recording: Recording, streams: ResultStreams) -> float:
+def _set_anew(
+    history: Sequence[tuple[int, object]], recording: Recording, streams: ResultStreams
+) -> float:
     """What speaks against a parameter that was set anew while the mission ran: it is then a turn.
 
     0 for one that was not, or if its values over time were not recorded.
     """
-    history = ParameterValues(recording.values).history(one.parameter)
     turns = (np.array([time_ns for time_ns, _ in history[1:]]) - streams.begin_ns) / 1e9
     marks = marked(recording.marks, streams)
     turns = turns[(turns >= 0.0) & (turns <= marks.firsts.max())]

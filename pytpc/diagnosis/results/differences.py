@@ -170,11 +170,14 @@ class CodeComparison:
     @property
     def line(self) -> str:
         """``the code is not that of the good run monday: nav/planner changed``."""
+        of = f"that of the good run {self.run}"
         if self.is_same:
-            return f"the code is that of the good run {self.run}"
-        said = [f"{listed(self.changed, _NAMED)} changed"] if self.changed else []
-        said += [f"{listed(self.unseen, _NAMED)} reported only now"] if self.unseen else []
-        return f"the code is not that of the good run {self.run}: {', '.join(said)}"
+            return f"the code is {of}"
+        unseen = f"{listed(self.unseen, _NAMED)} reported only now" if self.unseen else ""
+        if not self.changed:
+            return f"the code is {of}, but {unseen}"
+        said = [f"{listed(self.changed, _NAMED)} changed", *([unseen] if unseen else [])]
+        return f"the code is not {of}: {', '.join(said)}"
 
 
 @dataclass(frozen=True, slots=True)

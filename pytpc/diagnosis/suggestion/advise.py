@@ -331,6 +331,8 @@ def as_in_the_good_run(found: Difference) -> Remedy:
     nothing = Remedy(found.name, None, None, None, None, reason, reason, None, None, None)
     if not isinstance(current, bool | int | float) or good.number is None:
         return nothing
+    if isinstance(current, float) and not math.isfinite(current):
+        return nothing
     return restored(replace(nothing, current=current), good.number, "reference", NAMES["reference"])
 
 

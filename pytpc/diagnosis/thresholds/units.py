@@ -6,7 +6,7 @@ import ast
 import math
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, Context
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -25,6 +25,8 @@ _WHOLE_TYPES = frozenset(
 _FLOAT_TYPES = frozenset({"float", "double", "long double"})
 _CLOSE = 1e-9
 _TINY = 1e-12
+
+_LONGEST_TEXT = 500
 
 
 class NoUnitError(Exception):
@@ -116,11 +118,18 @@ def added_by(comparison: Comparison) -> float | None:
     transform = comparison.transform
     if transform is None or transform.kind != "expression" or transform.tree is not None:
         return None
-    text = transform.text.replace("->", ".").replace("::", "_")
-    try:
-        return _slope(ast.parse(text, mode="eval").body) or None
-    except (SyntaxError, ValueError, RecursionError, ArithmeticError):
+    return _slope_of(transform.text)
+
+
+@lru_cache(4096)
+def _slope_of(text: str) -> float | None:
+    if len(text) > _LONGEST_TEXT:
         return None
+    try:
+        slope = _slope(ast.parse(text.replace("->", ".").replace("::", "_"), mode="eval").body)
+    except (SyntaxError, ValueError, RecursionError, ArithmeticError, MemoryError):
+        return None
+    return slope if slope and math.isfinite(slope) else None
 
 
 def _slope(node: ast.expr) -> float:
