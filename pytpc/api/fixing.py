@@ -14,7 +14,7 @@ from pytpc.api.fix_state import FixState, FixTry, Stand
 from pytpc.base.wording import Number, exact, show
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.results.advice import BlamedAdvice, Remedy
-from pytpc.diagnosis.results.suspects import Accused, Suspected, Uncompared
+from pytpc.diagnosis.results.suspects import Accused, Uncompared
 from pytpc.diagnosis.suggestion.advise import advise_blamed, declared_for
 from pytpc.diagnosis.trying import (
     KNOWN_GOOD,
@@ -199,7 +199,7 @@ class Conversation:
         return Proposal(
             would_be,
             advice.what_if.text if advice.what_if is not None and found.text else "",
-            _acts_at(accused),
+            f"{accused.place}  {accused.condition}".rstrip(),
             beyond(found.value, known, declared, found.doubt),
             origin,
             compared is not None,
@@ -275,14 +275,6 @@ def _base_of(found: Remedy, tries: Sequence[FixTry], threshold: float) -> Number
     if tries:
         return tries[0].old
     return threshold if found.current is None else found.current
-
-
-def _acts_at(accused: Suspected) -> str:
-    """The source line of a suspect, or what else is known of it."""
-    if isinstance(accused, Uncompared):
-        return accused.difference.effect
-    found = accused.comparison
-    return f"{found.file}:{found.lineno}  {(found.source_code or '').strip()}".rstrip()
 
 
 def _declared(asked: AskedMission, advice: BlamedAdvice) -> Declared | None:

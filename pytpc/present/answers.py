@@ -14,7 +14,7 @@ from pytpc.base.wording import exact, percent, plain, show, shown_value
 from pytpc.diagnosis.results.advice import Advice
 from pytpc.diagnosis.results.diagnosis import Diagnosis
 from pytpc.diagnosis.results.differences import RunDifferences
-from pytpc.diagnosis.results.suspects import MarkRanking, Suspected, Uncompared
+from pytpc.diagnosis.results.suspects import MarkRanking
 
 _GAP = 2
 _DIFFERENCES = 8
@@ -137,12 +137,6 @@ class Advices(TableSequence[Advice]):
         return NotebookTable(headings, tuple(rows), frozenset({0, 2}))
 
 
-def _acts_at(found: Suspected) -> str:
-    if isinstance(found, Uncompared):
-        return found.difference.effect
-    return f"{found.comparison.file}:{found.comparison.lineno}"
-
-
 @dataclass(frozen=True)
 class Diagnosed(Diagnosis):
     """The answer about a mission, to look at in a terminal or a notebook."""
@@ -165,7 +159,7 @@ class Diagnosed(Diagnosis):
                 "parameter": one.parameter,
                 "probability": one.probability,
                 "type": one.type,
-                "place": _acts_at(one),
+                "place": one.place,
                 "key": one.key,
             }
             for one in self.blame.suspects
@@ -185,7 +179,7 @@ class Diagnosed(Diagnosis):
                     accused.type or "",
                     one.current,
                     what if tried.direction else f"none: {tried.reason}",
-                    _acts_at(accused),
+                    accused.place,
                 )
             )
         headings = ("#", "parameter", "probability", "type", "value", "to try", "compared at")

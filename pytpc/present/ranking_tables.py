@@ -19,11 +19,10 @@ from pytpc.diagnosis.results.advice import (
 )
 from pytpc.diagnosis.results.diagnosis import Diagnosis
 from pytpc.diagnosis.results.differences import Difference, RunDifferences
-from pytpc.diagnosis.results.suspects import MarkRanking, Suspected, Uncompared
+from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.present.listing import Heading, Listing
 from pytpc.recording.marks import MarkType
 from pytpc.recording.mission import Recording
-from pytpc.static.link_unit import Comparison
 
 _TYPE_WORDS = {
     "I": "type I, did what it should not",
@@ -160,7 +159,7 @@ def _blamed_cells(one: BlamedAdvice) -> list[Text]:
         Text("" if accused.type is None else _KINDS[accused.type]),
         Text(one.current),
         _advised(tried),
-        _acts_at(accused),
+        _place(accused.place, accused.condition),
     ]
 
 
@@ -214,7 +213,7 @@ def _cells(row: Suggested, mixed: bool) -> list[Text]:
         _advised(advice),
         *([Text(suspect.type)] if mixed else []),
         Text(f"{suspect.score:.3g}"),
-        _place(suspect.comparison),
+        _place(suspect.place, suspect.condition),
     ]
 
 
@@ -224,19 +223,12 @@ def _advised(found: Suggestion | Remedy) -> Text:
     return Text(f"{_WAYS[found.direction]} ").append(exact(found.value), style="bold")
 
 
-def _acts_at(found: Suspected) -> Text:
-    """The source line; of a parameter that no comparison reports, what is known of it."""
-    if isinstance(found, Uncompared):
-        return Text(plain(found.difference.effect))
-    return _place(found.comparison)
-
-
-def _place(found: Comparison) -> Text:
-    """The source line and the condition below it."""
-    place = Text(plain(f"{found.file}:{found.lineno}"))
-    if found.source_code:
-        place.append("\n" + plain(found.source_code.strip()), style="dim")
-    return place
+def _place(place: str, condition: str) -> Text:
+    """The source line and the condition below it, if it is known."""
+    text = Text(plain(place))
+    if condition:
+        text.append("\n" + plain(condition), style="dim")
+    return text
 
 
 def print_suggestions(console: Console, found: Diagnosis, parameter: str | None) -> None:
@@ -264,10 +256,7 @@ def _suggested(found: Diagnosis, one: BlamedAdvice) -> RenderableType:
     else:
         line.append(plain(tried.text), style=style)
     lines = [line, Text(f"   {percent(accused.probability)} that it is this one", style=style)]
-    if isinstance(accused, Uncompared):
-        lines.append(Text(plain(f"   {accused.difference.effect}"), style="dim"))
-    else:
-        lines.append(_place_line(accused.comparison))
+    lines.append(_place_line(accused.place, accused.condition))
     if one.what_if is not None:
         lines.append(Text(plain(f"   {one.what_if.text}")))
     lines += [Text(plain(f"   it {each.sentence}")) for each in accused.followed]
@@ -300,13 +289,13 @@ def _list(words: Sequence[str]) -> str:
 
 def _suspect(number: int, joined: JoinedAdvice, marks: int) -> RenderableType:
     advice = joined.advice
-    tried, smallest, found = joined.remedy, advice.suggestion, advice.suspect.comparison
+    tried, smallest, suspect = joined.remedy, advice.suggestion, advice.suspect
     line = Text(f"{number}  ")
     if tried.value is None:
         line.append(plain(f"{smallest.parameter}: {smallest.reason or tried.reason}"), style="dim")
     else:
         line.append(plain(tried.text), style="bold" if number == 1 else "")
-    lines = [line, _place_line(found)]
+    lines = [line, _place_line(suspect.place, suspect.condition)]
     if joined.what_if is not None:
         lines.append(Text(plain(f"   {joined.what_if.text}")))
     if smallest.value is not None and smallest.value != tried.value:
@@ -320,8 +309,6 @@ def _suspect(number: int, joined: JoinedAdvice, marks: int) -> RenderableType:
     return Group(*lines)
 
 
-def _place_line(found: Comparison) -> Text:
+def _place_line(place: str, condition: str) -> Text:
     """The same in one line."""
-    place = plain(f"{found.file}:{found.lineno}")
-    code = f"  {plain(found.source_code.strip())}" if found.source_code else ""
-    return Text(f"   {place}{code}", style="dim")
+    return Text(plain(f"   {place}  {condition}".rstrip()), style="dim")

@@ -304,11 +304,11 @@ def asked(session: Session) -> list[str]:
     """The lines that ask the observer to type; none if nothing is being typed."""
     if session.naming is not None:
         prompt = f"where (number, name or part): {session.naming.typed}_"
-        return [session.said, prompt] if session.said else [prompt]
-    if session.dating is not None:
+    elif session.dating is not None:
         prompt = f"{BEGAN_PROMPT} {session.dating}_"
-        return [session.said, prompt] if session.said else [prompt]
-    return [] if session.typing is None else [f"note: {session.typing}_"]
+    else:
+        return [] if session.typing is None else [f"note: {session.typing}_"]
+    return [session.said, prompt] if session.said else [prompt]
 
 
 def to_choose(session: Session, width: int, room: int) -> list[str]:

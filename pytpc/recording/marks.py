@@ -95,11 +95,7 @@ class Mark:
         (12.0, 12.0)
         """
         found = _BEGAN.search(self.note)
-        if found is None:
-            return None
-        first = float(found[1])
-        last = first if found[2] is None else float(found[2])
-        return (max(first, last), min(first, last))
+        return None if found is None else _span(found)
 
     @property
     def remark(self) -> str:
@@ -175,9 +171,13 @@ def parse_began(text: str) -> tuple[float, float]:
     found = _TYPED.fullmatch(text.strip())
     if found is None:
         raise ValueError(f"{text.strip()!r} is not like 20-5, or 12")
-    first = float(found[1])
-    last = first if found[2] is None else float(found[2])
-    return (max(first, last), min(first, last))
+    return _span(found)
+
+
+def _span(found: re.Match[str]) -> tuple[float, float]:
+    """The two numbers of a match, the larger one first; one number is both."""
+    ends = float(found[1]), float(found[2] or found[1])
+    return max(ends), min(ends)
 
 
 def topic_of_marks(topic: str) -> tuple[MarkType | None, str] | None:

@@ -27,7 +27,6 @@ from pytpc.diagnosis.results.suspects import (
     Blame,
     Evaluation,
     Suspected,
-    Uncompared,
 )
 from pytpc.diagnosis.scores.evaluations import KeyRows, LoggedEvaluations
 from pytpc.diagnosis.scores.score_tables import Tpcs
@@ -78,7 +77,7 @@ def blame(recording: Recording, static_info: StaticInfo, question: Question = PL
     suspects = _in_order(
         [
             *(replace(one, probability=left * one.probability) for one in compared),
-            *(Uncompared(1, False, one.probability, one.difference) for one in silent),
+            *silent,
         ]
     )
     code = None if differences is None else differences.code

@@ -109,13 +109,14 @@ def before_changes(static_info: StaticInfo, changes: Iterable[Change]) -> dict[s
     for change in joined.values():
         for key, comparison in every.meant(change.parameter):
             now, then = (_threshold(static_info, key, v) for v in (change.new, change.old))
-            factor = added_by(comparison)
-            before = found.get(key)
             if not math.isnan(then):
                 # Nodes with values of their own may run the same code.
+                before = found.get(key)
                 pairs = before.pairs if isinstance(before, Instead) else ()
                 found[key] = then if math.isnan(now) else Instead((*pairs, (now, then)))
-            elif factor is not None and math.isfinite(change.old - change.new):
+                continue
+            factor = added_by(comparison)
+            if factor is not None and math.isfinite(change.old - change.new):
                 found[key] = Moved(factor * (change.old - change.new))
     return found
 

@@ -12,8 +12,7 @@ of latches in type II: a change that cannot be undone. *acted* and *waited* are 
 mean of its comparisons' odds. The *baseline* is the order by the thesis's ranks, joined over the
 marks: place k has a probability of 1/k to a power; it says nothing of "none of them". A parameter
 that one witness puts first is high in the mixture; a product would need all witnesses to agree. A
-few weights are fitted
-on the tuning half of the study (`pytpc_evaluation.study.fit`).
+few weights are fitted on the tuning half of the study (`pytpc_evaluation.study.fit`).
 """
 
 from __future__ import annotations

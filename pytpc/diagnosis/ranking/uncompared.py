@@ -9,17 +9,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
 from pytpc.diagnosis.ranking.known_good import SET_ANEW
-from pytpc.diagnosis.ranking.mark_evidence import any_time, caused, marked
+from pytpc.diagnosis.ranking.mark_evidence import Marked, any_time, caused, marked
 from pytpc.diagnosis.ranking.other_values import ALONE, REPLAYED, nobody
 from pytpc.diagnosis.ranking.posterior import Posterior
 from pytpc.diagnosis.ranking.replayed_outcomes import ACQUITTED, UNKNOWN_CHARGE
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.results.differences import Difference, RunDifferences
+from pytpc.diagnosis.results.suspects import Uncompared
 from pytpc.recording.mission import Recording
 from pytpc.recording.parameter_values import ParameterValues
 
@@ -29,19 +29,12 @@ may, and a robot may have thousands of them. Not of one whose name is like one t
 nobody set: a misspelt name leaves a default."""
 
 
-class Silent(NamedTuple):
-    """A parameter that no comparison of the mission reports, with its probability."""
-
-    difference: Difference
-    probability: float
-
-
 def with_uncompared(
     found: Posterior,
     recording: Recording,
     streams: ResultStreams,
     differences: RunDifferences | None,
-) -> tuple[float, tuple[Silent, ...]]:
+) -> tuple[float, tuple[Uncompared, ...]]:
     """Judge what differs from good runs, and no comparison reports, beside the compared parameters.
 
     Args:
@@ -51,8 +44,8 @@ def with_uncompared(
         differences: what differs from good runs; None if there is none.
 
     Returns:
-        The share that is left to the compared parameters and to "none of them", and the others, the
-        likeliest first.
+        The share that is left to the compared parameters and to "none of them", and the others by
+        name, without their positions.
     """
     silent = [] if differences is None else [one for one in differences.found if one.is_silent]
     if not silent:
@@ -61,17 +54,17 @@ def with_uncompared(
     level = found.scores[order[0]] - math.log(found.posterior[order[0]]) if order else 0.0
     plain = REPLAYED * UNKNOWN_CHARGE - ALONE * math.log(max(len(order), 1))
     base = level if order else nobody(differences) - math.log(found.none)
-    values = ParameterValues(recording.values)
+    values, marks = ParameterValues(recording.values), marked(recording.marks, streams)
     unread = sum(_is_unread(one) for one in silent)
     odds = []
     for one in silent:
-        score = plain + _set_anew(values.history(one.parameter), recording, streams)
+        score = plain + _set_anew(values.history(one.parameter), marks, streams)
         if _is_unread(one):
             score += READ_BY_NOBODY - math.log(unread)
         odds.append(math.exp(score - base))
     left = 1.0 / (1.0 + sum(odds))
-    named = [Silent(one, left * each) for one, each in zip(silent, odds, strict=True)]
-    return left, tuple(sorted(named, key=lambda one: (-one.probability, one.difference.name)))
+    named = [Uncompared(1, False, left * each, one) for one, each in zip(silent, odds, strict=True)]
+    return left, tuple(sorted(named, key=lambda one: one.parameter))
 
 
 def _is_unread(one: Difference) -> bool:
@@ -79,14 +72,13 @@ def _is_unread(one: Difference) -> bool:
 
 
 def _set_anew(
-    history: Sequence[tuple[int, object]], recording: Recording, streams: ResultStreams
+    history: Sequence[tuple[int, object]], marks: Marked, streams: ResultStreams
 ) -> float:
     """What speaks against a parameter that was set anew while the mission ran: it is then a turn.
 
     0 for one that was not, or if its values over time were not recorded.
     """
     turns = (np.array([time_ns for time_ns, _ in history[1:]]) - streams.begin_ns) / 1e9
-    marks = marked(recording.marks, streams)
     turns = turns[(turns >= 0.0) & (turns <= marks.firsts.max())]
     if not turns.size:
         return 0.0

@@ -31,8 +31,25 @@ class Evaluation(NamedTuple):
     node: str
 
 
+class _Compared:
+    """What is compared somewhere."""
+
+    __slots__ = ()
+    comparison: Comparison
+
+    @property
+    def place(self) -> str:
+        """Where it is compared: ``file:line``."""
+        return f"{self.comparison.file}:{self.comparison.lineno}"
+
+    @property
+    def condition(self) -> str:
+        """The source code there; empty if it is not known."""
+        return (self.comparison.source_code or "").strip()
+
+
 @dataclass(frozen=True, slots=True)
-class Suspect:
+class Suspect(_Compared):
     """A parameter at a mark.
 
     ``position`` counts from 1; ``tied`` parameters share one. ``key`` and ``comparison`` are its
@@ -136,7 +153,7 @@ class Followed:
 
 
 @dataclass(frozen=True, slots=True)
-class Accused:
+class Accused(_Compared):
     """A parameter and the probability that it is to blame, by all marks of a mission.
 
     ``position`` counts from 1; ``tied`` parameters share one. ``type`` is the likelier type of
@@ -160,7 +177,7 @@ class Uncompared:
     """A parameter that no comparison of the mission reports, and that differs from good runs.
 
     ``position``, ``tied`` and ``probability`` are as in `Accused`; there is no type of error, no
-    ``key``, and nobody ``followed``.
+    ``key`` and ``condition``, and nobody ``followed``.
     """
 
     position: int
@@ -170,11 +187,17 @@ class Uncompared:
     type: None = None
     key: None = None
     followed: tuple[Followed, ...] = ()
+    condition: str = ""
 
     @property
     def parameter(self) -> str:
         """What an answer calls it."""
         return self.difference.name
+
+    @property
+    def place(self) -> str:
+        """What is known of where it acts, in words."""
+        return self.difference.effect
 
 
 Suspected: TypeAlias = "Accused | Uncompared"

@@ -75,13 +75,13 @@ def judge_by_others(
         InputError: the mission is not whole.
         RunError: the program fails.
     """
+    of_crowd = {name: one for name, one in methods.items() if name in _METHODS}
     with TemporaryDirectory(prefix="tpc-people-") as marks:
         words = ["--causes", str(folder / CAUSES_FILE), "--sights", str(folder / SIGHTS_FILE)]
         words += ["--seed", str(_seed(folder)), "--folder", marks]
         look_on(PROGRAM, os.environ, words)
         for crowd in CROWDS:
             marked = replace(mission, marks=user_marks(Path(marks) / f"{crowd}.parquet"))
-            of_crowd = {name: one for name, one in methods.items() if name in _METHODS}
             for row in judge(marked, of_crowd, _LABELS, users=()):
                 yield replace(row, who=crowd)
     alone = {name: one for name, one in methods.items() if name in ALONE_METHODS}
