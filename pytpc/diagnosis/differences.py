@@ -229,7 +229,8 @@ def _on_the_server(bad: RunValues, good: Sequence[RunValues], known: _Known) -> 
         if any(one.value is not None and _same(one.value, now.value) for one in then):
             continue
         last = next((one for one in reversed(then) if one.value is not None), then[-1])
-        found.append(_difference(name, last, now, (bad, known)))
+        made = _difference(name, last, now, (bad, known))
+        found.append(replace(made, apart=_apart(now.value, [*before, *(v.value for v in then)])))
     return found
 
 
@@ -284,8 +285,26 @@ def _reported(
         if now is None and then is None:
             # Its thresholds are worked out from more than the parameter, which may be as it was.
             continue
-        found.append(_difference(parameter, SetValue(then), SetValue(now), (bad, known)))
+        made = _difference(parameter, SetValue(then), SetValue(now), (bad, known))
+        found.append(replace(made, apart=_apart(now, runs)))
     return found
+
+
+def _apart(now: object, good: Sequence[object]) -> float | None:
+    """See `Difference`."""
+    here, *there = (_finite(value) for value in (now, *good))
+    known = [value for value in there if value is not None]
+    if here is None or not known:
+        return None
+    if min(known) < here < max(known):
+        return 0.0
+    return min(abs(math.log(here / then)) if here * then > 0.0 else math.inf for then in known)
+
+
+def _finite(value: object) -> float | None:
+    """A value as a number; None of a flag, a text and what is beyond any double."""
+    number = None if isinstance(value, bool) else SetValue(value).number
+    return number if number is not None and math.isfinite(number) else None
 
 
 def _difference(

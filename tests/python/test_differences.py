@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import shutil
 from dataclasses import replace
+from pathlib import Path
 
 import click
 import pytest
@@ -436,6 +438,11 @@ def test_a_run_that_was_launched_otherwise_or_failed_is_not_offered(runs, change
     assert last_unmarked_run(bad) == good
 
 
+def offered_in(text):
+    """The good runs that an answer offers; it may name them from the folder where it is asked."""
+    return [Path(name).resolve() for name in re.findall(r"--reference (\S+)", text)]
+
+
 # A time limit is how a run without an end of its own is ended. If a topic was to end it, it failed.
 def test_a_run_that_ended_by_its_time_limit_is_offered_unless_a_topic_was_to_end_it(runs):
     good, bad, static = runs
@@ -448,7 +455,7 @@ def test_a_run_that_ended_by_its_time_limit_is_offered_unless_a_topic_was_to_end
     for command in ("rank", "suggest", "report"):
         output = ("-o", good.parent / "page.html") if command == "report" else ()
         said = asked(command, bad, "--static", static, *output).stderr
-        assert f"--reference {good}" in said, command
+        assert offered_in(said) == [good], command
     rewrite(good, until="/mission_done")
     assert last_unmarked_run(bad) is None
 
@@ -480,7 +487,7 @@ def test_the_same_run_is_offered_once(runs):
         offer_good_run(bad)
         offer_good_run(bad)
     assert err.getvalue().decode().count("nobody marked it") == 1
-    assert asked("rank", bad, "--static", static).stderr.count(f"--reference {good}") == 1
+    assert offered_in(asked("rank", bad, "--static", static).stderr) == [good]
 
 
 @pytest.fixture

@@ -144,7 +144,7 @@ def test_ctrl_c_ends_the_command_and_leaves_the_try_open(robot):
                     break
                 time.sleep(0.1)
             process.send_signal(signal.SIGINT)
-            said = process.communicate(timeout=20)[1]
+            said = process.communicate(timeout=120)[1]
         finally:
             process.kill()
     assert (process.returncode, said.splitlines()[-1]) == (130, "pytpc: interrupted")

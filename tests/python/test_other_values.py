@@ -18,7 +18,12 @@ from pytpc.diagnosis.ranking.known_good import (
     of_settings,
     other_thresholds,
 )
-from pytpc.diagnosis.ranking.other_values import diagnose_beside, diagnose_replayed
+from pytpc.diagnosis.ranking.other_values import (
+    ALONE,
+    REPLAYED,
+    diagnose_beside,
+    diagnose_replayed,
+)
 from pytpc.diagnosis.ranking.replayed_outcomes import ACQUITTED, UNKNOWN_CHARGE, replayed, turns
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.scores.score_tables import Tpcs
@@ -304,3 +309,33 @@ def test_what_is_worked_out_from_more_than_the_parameter_is_no_setting():
     worked_out = Transform("expression", text="max_height * load")
     static = static_info(comparison(0, "~height", transform=worked_out), comparison(1, "~speed"))
     assert of_settings(static, Tpcs.of(static), events(set_anew(5, 2))).others == {}
+
+
+def set_up(*seconds):
+    """~height is compared at these seconds, and ~speed each second, with the marks at 30 s."""
+    rows = [(t, 0, False, 1, 2) for t in seconds]
+    rows += [(t, 1, t > 25, t, 25) for t in range(40)]
+    return recording(sorted(rows), 30.0)
+
+
+# The good run had another threshold, with which 1 is still below it. Compared at the set-up only,
+# it is as likely as one of which the log knows nothing, for it may act as a number.
+def test_what_is_compared_at_the_set_up_only_is_neither_accused_nor_acquitted():
+    names = Tpcs.of(STATIC).names
+    prior = np.array([0.0 if name == "~height" else UNCHANGED for name in names])
+
+    def score(*seconds):
+        found = diagnose_replayed(set_up(*seconds), STATIC, KnownGood(prior, {key(0): 1.5}))
+        return found.scores[names.index("~height")]
+
+    assert score(0.0, 1.0) == pytest.approx(REPLAYED * UNKNOWN_CHARGE - ALONE * math.log(2))
+    assert score(0.0, 1.0, 15.0) < REPLAYED * ACQUITTED
+
+
+def test_a_set_up_lasts_ten_seconds_and_not_longer_than_up_to_a_mark():
+    streams = ResultStreams.of(set_up(0.0, 9.0).events, Tpcs.of(STATIC))
+    height = Tpcs.of(STATIC).names.index("~height")
+    assert streams.only_at_set_up(30.0) == {height}
+    assert streams.only_at_set_up(8.0) == frozenset()
+    later = ResultStreams.of(set_up(0.0, 11.0).events, Tpcs.of(STATIC))
+    assert later.only_at_set_up(30.0) == frozenset()

@@ -68,6 +68,43 @@ def test_what_no_analysed_node_reads_is_less_likely_than_what_one_reads():
     assert found["~radius"] > 10 * found["/uav/extra"] > 0
 
 
+GAINS = StaticInfo.of(
+    [link_unit([FACES], [replace(READS[2], name=name) for name in ("~a", "~b", "~c")])]
+)
+
+
+def gains(good, bad):
+    """The probabilities of ~a, ~b and ~c, in this order, that differ from the good runs."""
+    flown = replace(flight(5), marks=MARKS)
+    runs = [RunValues("good", flight(5), values(faces=5, **one)) for one in good]
+    found = differences(RunValues("bad", flown, values(faces=5, **bad)), runs, GAINS)
+    references = [one.recording for one in runs]
+    question = Question(references=references, differences=found, changes=changes_of(found))
+    now = odds(diagnose_mission(flown, GAINS, question))
+    return [now[name] for name in ("~a", "~b", "~c")]
+
+
+# A factor of 1.2, one of 8, and one of more than ten, as a change of the sign is.
+def test_of_those_that_no_comparison_reports_the_larger_difference_is_likelier():
+    small, large, most = gains([{"a": 5, "b": 5, "c": 500}], {"a": 6, "b": 40, "c": 5})
+    assert small < large < most
+    assert gains([{"a": 5, "b": 5, "c": 500}], {"a": 6, "b": 40, "c": -5})[2] == most
+
+
+# The nearest of the good values counts; and what lies between two is likely to be right, too.
+def test_how_far_it_is_from_the_good_runs_counts():
+    good = [{"a": 4, "b": 8, "c": 1}, {"a": 1, "b": 1, "c": 10}]
+    between, beyond, far = gains(good, {"a": 2, "b": 9, "c": 100})
+    assert between < beyond < far
+
+
+# A gain of 6 for 5 is a smaller difference than another frame, one of 500 a larger one.
+def test_another_text_or_flag_is_a_difference_of_the_middle():
+    small, text, large = gains([{"a": 5, "b": "map", "c": 5}], {"a": 6, "b": "odom", "c": 500})
+    flag = gains([{"a": 5, "b": True, "c": 5}], {"a": 6, "b": False, "c": 500})[1]
+    assert small < text == flag < large
+
+
 # Thousands of parameters of a robot that is not analysed do not silence a verdict.
 def test_what_nobody_reads_has_one_share_together():
     more = {f"p{number}": 2 for number in range(500)}

@@ -16,12 +16,12 @@ from pytpc.base.wording import many
 from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.ranking.mark_ranking import outside
 from pytpc.diagnosis.ranking.other_nodes import OtherNodes
-from pytpc.diagnosis.ranking.other_values import diagnose_beside
+from pytpc.diagnosis.ranking.other_values import diagnose_beside, unheard
 from pytpc.diagnosis.ranking.posterior import Decisive, Posterior
 from pytpc.diagnosis.ranking.reach import place_notes
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.ranking.summarised import with_summarised
-from pytpc.diagnosis.ranking.uncompared import with_uncompared
+from pytpc.diagnosis.ranking.uncompared import by_size, with_uncompared
 from pytpc.diagnosis.results.suspects import (
     Accused,
     Blame,
@@ -74,12 +74,9 @@ def blame(recording: Recording, static_info: StaticInfo, question: Question = PL
         compared = _with_followed(compared, others, (last_ns - streams.begin_ns) / 1e9)
     differences = question.differences
     left, silent = with_uncompared(found, recording, streams, differences)
-    suspects = _in_order(
-        [
-            *(replace(one, probability=left * one.probability) for one in compared),
-            *silent,
-        ]
-    )
+    compared = tuple(replace(one, probability=left * one.probability) for one in compared)
+    no_word = {found.names[column] for column in unheard(recording, streams)}
+    suspects = _in_order(by_size((*compared, *silent), differences, no_word))
     code = None if differences is None else differences.code
     made = Blame(suspects, left * found.none, len(tpcs.names), recording.marks, notes, code)
     if len(recording.marks) > 1 or made.accused is not None:

@@ -23,9 +23,11 @@ from pytpc.diagnosis.ranking.known_good import (
     of_references,
     of_settings,
 )
+from pytpc.diagnosis.ranking.mark_evidence import marked
 from pytpc.diagnosis.ranking.posterior import Posterior, diagnose_log, softmax
 from pytpc.diagnosis.ranking.reach import reach_prior
 from pytpc.diagnosis.ranking.replayed_outcomes import UNKNOWN_CHARGE, replayed
+from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.ranking.summarised import with_summarised
 from pytpc.diagnosis.results.differences import RunDifferences
 from pytpc.diagnosis.scores.score_tables import Tpcs
@@ -167,6 +169,17 @@ def _by_values(
     return diagnose_replayed(recording, static_info, KnownGood(prior, others, same), none_score)
 
 
+def unheard(recording: Recording, streams: ResultStreams) -> frozenset[int]:
+    """The columns of parameters that were compared while their nodes were set up only.
+
+    Args:
+        recording: with its marks, at least one.
+        streams: of the recording.
+    """
+    first_s = float(marked(recording.marks, streams).firsts.min())
+    return streams.only_at_set_up(first_s)
+
+
 def _unknown(prior: Floats) -> float:
     """The log odds of a parameter without a default, if it differs as often as the others do."""
     known = prior[~np.isnan(prior)]
@@ -191,12 +204,17 @@ def diagnose_replayed(
     alone = diagnose_log(recording, static_info)
     if not np.isfinite(alone.scores).any():
         return alone
-    prior = known.prior
+    prior, tpcs = known.prior, Tpcs.of(static_info)
     found = replayed(recording, static_info, known.others, known.same)
     charges = np.array([found.get(name, math.nan) for name in alone.names])
     # What kept its value, or its default, has no other threshold.
     unknown = np.where(prior > DEFAULT, UNKNOWN_CHARGE, 0.0)
     charges = np.where(np.isnan(charges), unknown, charges)
-    scores = ALONE * alone.scores + REPLAYED * charges + prior
+    by_log = alone.scores.copy()
+    # What was decided at the set-up holds all mission long, and the log has no word of it.
+    silent = sorted(unheard(recording, ResultStreams.of(with_summarised(recording), tpcs)))
+    by_log[silent] = np.maximum(by_log[silent], -math.log(np.isfinite(by_log).sum()))
+    charges[silent] = np.maximum(charges[silent], unknown[silent])
+    scores = ALONE * by_log + REPLAYED * charges + prior
     posterior, none = softmax(scores, none_score)
     return replace(alone, scores=scores, posterior=posterior, none=none)

@@ -30,6 +30,9 @@ DECISIVE = 20
 LARGEST = 1e290
 """A value beyond this counts as infinite, so that sums stay within a double."""
 
+SET_UP_S = 10.0
+"""What a node asks only so soon after its first report, it asked while it was set up."""
+
 CASCADE_S = 1.5
 """A change within this time of another one may be its consequence: nodes wait for messages, and a
 mission runs at a few Hz."""
@@ -110,6 +113,23 @@ class ResultStreams:
         found = np.sort(np.concatenate([np.zeros(0), *times]))
         edge = PAUSE_S
         return found[(found > edge) & (found < self.seconds - edge)]
+
+    def only_at_set_up(self, before_s: float) -> frozenset[int]:
+        """The columns of parameters that were compared only while their nodes were set up.
+
+        Args:
+            before_s: no set-up lasts longer, in seconds since the log began.
+        """
+        begins: dict[str, float] = {}
+        for stream in self.streams:
+            first = float(stream.times[0])
+            begins[stream.node] = min(first, begins.get(stream.node, first))
+        later = {
+            stream.column
+            for stream in self.streams
+            if stream.times[-1] > min(begins[stream.node] + SET_UP_S, before_s)
+        }
+        return frozenset({stream.column for stream in self.streams} - later)
 
     @cached_property
     def decisions(self) -> Floats:

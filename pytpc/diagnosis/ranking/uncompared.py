@@ -2,13 +2,15 @@
 
 The log has nothing to say about such a parameter. It is a suspect because its value differs from
 those of good runs, with what the log would say of a parameter that fits to the marks neither well
-nor badly.
+nor badly. Among them, and what was compared while a node was set up only, the larger difference is
+the likelier cause.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,7 +21,7 @@ from pytpc.diagnosis.ranking.posterior import Posterior
 from pytpc.diagnosis.ranking.replayed_outcomes import ACQUITTED, UNKNOWN_CHARGE
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.results.differences import Difference, RunDifferences
-from pytpc.diagnosis.results.suspects import Uncompared
+from pytpc.diagnosis.results.suspects import Suspected, Uncompared
 from pytpc.recording.mission import Recording
 from pytpc.recording.parameter_values import ParameterValues
 
@@ -27,6 +29,17 @@ READ_BY_NOBODY = -3.0
 """The log odds of all parameters together that no analysed node reads: one that was not analysed
 may, and a robot may have thousands of them. Not of one whose name is like one that a node reads and
 nobody set: a misspelt name leaves a default."""
+
+SIZE = 0.5
+"""What a difference of a factor e counts between parameters of which the log says nothing: one that
+is ten times as large is three times as likely as one that is the same. By reason: what shows is
+seldom a small change. In the study, harmless changes are as large as others."""
+
+LARGEST = math.log(10.0)
+"""A larger difference, or one of the sign, counts as one of a factor of ten."""
+
+OTHER_WAY = math.log(3.0)
+"""A flag, a text or a list that differs counts as a factor of three."""
 
 
 def with_uncompared(
@@ -65,6 +78,43 @@ def with_uncompared(
     left = 1.0 / (1.0 + sum(odds))
     named = [Uncompared(1, False, left * each, one) for one, each in zip(silent, odds, strict=True)]
     return left, tuple(sorted(named, key=lambda one: one.parameter))
+
+
+def by_size(
+    suspects: Sequence[Suspected], differences: RunDifferences | None, unheard: Collection[str]
+) -> list[Suspected]:
+    """The suspects, those of which the log says nothing sharing their part by how much they differ.
+
+    What a parameter did is better evidence than how far its value is from a good one; but of these
+    nobody knows what they did.
+
+    Args:
+        suspects: of all kinds.
+        differences: what differs from good runs; None if there is none.
+        unheard: the names of those that were compared while their node was set up only.
+    """
+    sizes = {} if differences is None else {one.name: _size(one) for one in differences.found}
+    shares = {
+        one.parameter: one.probability * math.exp(SIZE * sizes[one.parameter])
+        for one in suspects
+        if one.parameter in sizes and (one.parameter in unheard or _is_read(one))
+    }
+    together = sum(one.probability for one in suspects if one.parameter in shares)
+    total = sum(shares.values())
+    return [
+        replace(one, probability=together * shares[one.parameter] / total)
+        if one.parameter in shares
+        else one
+        for one in suspects
+    ]
+
+
+def _is_read(one: Suspected) -> bool:
+    return isinstance(one, Uncompared) and not _is_unread(one.difference)
+
+
+def _size(one: Difference) -> float:
+    return OTHER_WAY if one.apart is None else min(one.apart, LARGEST)
 
 
 def _is_unread(one: Difference) -> bool:

@@ -60,7 +60,9 @@ class Difference:
     ``reads`` and ``compared_at`` are the places in the source. ``keys`` are its comparisons that
     the mission evaluated, ``replayed`` those of them that can be replayed. ``source`` is its name
     in the source, as suspects have it; empty if that means other parameters of the robot, too.
-    ``alike`` are names that nodes read and nobody set, if none of them reads this one.
+    ``alike`` are names that nodes read and nobody set, if none of them reads this one. ``apart`` is
+    how far its value is from the nearest one of the good runs, in powers of e, 0 between two of
+    them, infinite if the sign differs; None of what is no number, as a flag or a text.
     """
 
     parameter: str
@@ -73,6 +75,7 @@ class Difference:
     replayed: tuple[ReplayedComparison, ...] = ()
     source: str = ""
     alike: tuple[str, ...] = ()
+    apart: float | None = None
 
     @property
     def name(self) -> str:
