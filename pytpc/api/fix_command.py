@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from functools import partial
 from itertools import count
 from pathlib import Path
 
 from pytpc.base.errors import RunError
-from pytpc.base.signals import end_group, signals_end
+from pytpc.base.signals import running, signals_end
 
 _SIGINT_S, _SIGTERM_S = 10.0, 5.0
 _STDERR = 2
@@ -32,23 +33,21 @@ def run_command(command: str, number: int, mission: Path, timeout_s: float | Non
     env = {**os.environ, "TPC_FIX_TRY": str(number), "TPC_FIX_MISSION": str(mission)}
     again = "run `pytpc fix --command CMD` again, or take the value back with `pytpc fix --undo`"
     sys.stdout.flush()
-    with signals_end():
-        process = subprocess.Popen(
-            ["/bin/sh", "-c", command],
-            env=env,
-            stdin=subprocess.DEVNULL,
-            stdout=_STDERR,
-            start_new_session=True,
-        )
+    shell = partial(
+        subprocess.Popen[bytes],
+        ["/bin/sh", "-c", command],
+        env=env,
+        stdin=subprocess.DEVNULL,
+        stdout=_STDERR,
+        start_new_session=True,
+    )
+    with signals_end(), running(shell, _SIGINT_S, _SIGTERM_S) as process:
         try:
             status = process.wait(timeout_s)
         except subprocess.TimeoutExpired as error:
             raise RunError(
                 f"the command of try {number} took longer than {timeout_s:g} s; {again}"
             ) from error
-        finally:
-            if process.poll() is None:
-                end_group(process, _SIGINT_S, _SIGTERM_S)
     if status:
         raise RunError(f"the command of try {number} ended with status {status}; {again}")
     if not mission.exists():

@@ -11,7 +11,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from types import FrameType
-from typing import Any
+from typing import Any, AnyStr
 
 _TURN_S = 0.1
 
@@ -39,6 +39,41 @@ def signals_end() -> Iterator[None]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+@contextlib.contextmanager
+def running(
+    start: Callable[[], subprocess.Popen[AnyStr]], sigint_s: float, sigterm_s: float
+) -> Iterator[subprocess.Popen[AnyStr]]:
+    """A process, the leader of its group, that ends when the block ends, however that is.
+
+    A signal that comes while the process starts is delivered when it has: otherwise, nobody would
+    know the process any more, and it would go on.
+
+    Args:
+        start: starts it.
+        sigint_s: see `end_group`.
+        sigterm_s: see `end_group`.
+    """
+    held: list[int] = []
+    before: dict[int, Any] = {}
+    if threading.current_thread() is threading.main_thread():
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            if signal.getsignal(number) != signal.SIG_IGN:
+                before[number] = signal.signal(number, lambda came, _frame: held.append(came))
+    try:
+        process = start()
+    finally:
+        for known, handler in before.items():
+            signal.signal(known, handler)
+    with process:
+        try:
+            for late in held:
+                signal.raise_signal(late)
+            yield process
+        finally:
+            if process.poll() is None:
+                end_group(process, sigint_s, sigterm_s)
 
 
 def stop_on_signals() -> threading.Event:

@@ -11,6 +11,7 @@ import shutil
 import subprocess
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from glob import escape
 from pathlib import Path
 
@@ -22,7 +23,7 @@ from pytpc.base.paths import (
     search_path,
     without_conda,
 )
-from pytpc.base.signals import end_group, signals_end
+from pytpc.base.signals import running, signals_end
 from pytpc.workspace.packages import Package
 
 _TAIL_LINES = 25
@@ -278,28 +279,23 @@ def run_lines(
         environment: the whole environment.
         on_line: called with each line of both its outputs, without white space at the end.
     """
-    with (
-        signals_end(),
-        subprocess.Popen(
-            command,
-            cwd=folder,
-            env=dict(environment),
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            errors="replace",
-            start_new_session=True,
-        ) as process,
-    ):
-        try:
-            for line in process.stdout or ():
-                on_line(line.rstrip())
-        except BaseException:
-            # SIGINT first: colcon then records what it did not build.
-            end_group(process, 10, 5)
-            raise
-    return process.returncode
+    program = partial(
+        subprocess.Popen[str],
+        command,
+        cwd=folder,
+        env=dict(environment),
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+        start_new_session=True,
+    )
+    # SIGINT first: colcon then records what it did not build.
+    with signals_end(), running(program, 10, 5) as process:
+        for line in process.stdout or ():
+            on_line(line.rstrip())
+        return process.wait()
 
 
 def _latest_log(bases: Bases) -> Path | None:
