@@ -295,12 +295,13 @@ def with_keys_of(reference: Recording, static_info: StaticInfo, named: StaticInf
         static_info: of the build.
         named: the same with the names of the mission, from ``with_full_names``.
     """
-    there = with_full_names(static_info, reference, {})
-    every = (*named.comparisons, *there.comparisons)
-    bases = {base_key(key) for key in every if instance_number(key) is not None}
+    in_mission = _sources(named)
+    in_reference = _sources(with_full_names(static_info, reference, {}))
     keys: dict[str, str] = {}
-    for base in sorted(bases):
-        here, own = (_sources(static, base) for static in (named, there))
+    for base in sorted(in_mission.keys() | in_reference.keys()):
+        here, own = in_mission.get(base, {}), in_reference.get(base, {})
+        if not any(instance_number(key) is not None for key in (*here, *own)):
+            continue
         free = [key for key in here if own.get(key) != here[key]]
         moved = [key for key in own if own[key] != here.get(key)]
         for key in moved:
@@ -319,13 +320,13 @@ def with_keys_of(reference: Recording, static_info: StaticInfo, named: StaticInf
     return reference.with_keys(lambda key: keys.get(key, key))
 
 
-def _sources(static_info: StaticInfo, base: str) -> dict[str, str]:
-    """The parameters of a comparison's instances, by key."""
-    return {
-        key: one.source
-        for key, one in static_info.comparisons.items()
-        if base_key(key) == base and one.source is not None
-    }
+def _sources(static_info: StaticInfo) -> dict[str, dict[str, str]]:
+    """The parameters of each comparison's instances, by the comparison's key and by theirs."""
+    found = defaultdict[str, dict[str, str]](dict)
+    for key, one in static_info.comparisons.items():
+        if one.source is not None:
+            found[base_key(key)][key] = one.source
+    return dict(found)
 
 
 def _without_aliases(comparisons: list[Comparison], names: _Names) -> list[Comparison]:
