@@ -105,6 +105,16 @@ def test_another_text_or_flag_is_a_difference_of_the_middle():
     assert small < text == flag < large
 
 
+# The source has a part of the name only; the robot's is the one that can be set.
+def test_it_has_its_full_name_where_the_source_does_not_say_it():
+    reads = [replace(READS[2], name="~<dynamic>/radius")]
+    static = StaticInfo.of([link_unit([FACES], reads)])
+    good = RunValues("good", flight(5), {"/uav/planner/radius": 0.17})
+    bad = RunValues("bad", flight(5), {"/uav/planner/radius": 0.42})
+    (one,) = differences(bad, [good], static).found
+    assert (one.name, one.state) == ("/uav/planner/radius", "used")
+
+
 # Thousands of parameters of a robot that is not analysed do not silence a verdict.
 def test_what_nobody_reads_has_one_share_together():
     more = {f"p{number}": 2 for number in range(500)}

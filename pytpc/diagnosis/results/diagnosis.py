@@ -98,21 +98,13 @@ class Diagnosis:
             return found.text
         if self._only_stops:
             first = found.suspects[0]
-            said = (
+            return (
                 f"not sure: {first.parameter} is likeliest ({percent(first.probability)}), but the"
                 " log only shows that another value would stop all that it decides"
             )
-            return f"{said}; {self._silent}" if self.unreported else said
-        if not self.unreported:
-            return found.text
-        if not found.suspects:
+        if not found.suspects and self.unreported:
             return f"not sure: {self._silent}"
-        if self.is_none_likeliest:
-            none = f"none of the parameters ({percent(found.none)})"
-            return f"not sure: most likely {none}; {self._silent}"
-        first = found.suspects[0]
-        likeliest = f"{first.parameter} is likeliest ({percent(first.probability)})"
-        return f"not sure: {likeliest}; {self._silent}"
+        return found.text
 
     @property
     def _silent(self) -> str:

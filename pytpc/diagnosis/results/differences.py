@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pytpc.base.closest import did_you_mean
 from pytpc.base.wording import listed, many, shown_value
 from pytpc.static.coverage import State
+from pytpc.static.parameters import DYNAMIC
 
 _NAMED = 3
 
@@ -79,7 +80,13 @@ class Difference:
 
     @property
     def name(self) -> str:
-        """What an answer calls it: as a suspect is called, or else its full name."""
+        """What an answer calls it: as a suspect is called, or else its full name.
+
+        The full name, too, if no comparison reports it and part of its name in the source is not
+        known.
+        """
+        if self.is_silent and DYNAMIC in self.source and self.parameter.startswith("/"):
+            return self.parameter
         return self.source or self.parameter
 
     @property

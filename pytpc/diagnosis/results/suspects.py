@@ -249,8 +249,10 @@ class Blame:
                 f"not sure: most likely none of the parameters ({percent(self.none)};"
                 f" {self.else_cause}), then {name} ({sure})"
             )
+        silent = ", and no comparison reports it" if isinstance(first, Uncompared) else ""
         return (
-            f"not sure: {name} is likeliest ({sure}); none of the parameters: {percent(self.none)}"
+            f"not sure: {name} is likeliest ({sure}){silent}; none of the parameters:"
+            f" {percent(self.none)}"
         )
 
     @property
