@@ -76,6 +76,8 @@ private:
   /// The numbers of the reports of earlier plans, by subject and key. One plan
   /// may have several, as an analysis may.
   std::map<std::pair<Subject, std::string>, size_t> Known;
+  /// The numbers of all reports, by subject, place and key.
+  std::map<std::pair<Subject, std::string>, size_t> Placed;
   size_t Earlier = 0; ///< reports of earlier plans
 };
 
@@ -197,16 +199,25 @@ void Applier::addReport(const PlannedReport &Planned, Function &F) {
     ++Out.NotInstrumented;
     return;
   }
+  auto Of = [&](const Instruction *Before) {
+    return std::pair(Subject{R->Outcome, R->Compared, R->Threshold, Before},
+                     R->Key);
+  };
+  // The copies that a plan has for calls from other units are one function
+  // here, and an evaluation in it is one report.
+  if (auto Same = Placed.find(Of(R->Before)); Same != Placed.end()) {
+    if (Report &There = Out.Reports[Same->second]; !There.Object)
+      There.Object = R->Object;
+    return;
+  }
   // A flag may be the condition of several predicates.
-  const Instruction *Before = R->Compared == R->Threshold ? R->Before : nullptr;
+  const size_t Number = Out.Reports.size();
   auto [It, New] = Known.try_emplace(
-      {{R->Outcome, R->Compared, R->Threshold, Before}, R->Key},
-      Out.Reports.size());
-  Report *Same = New ? nullptr : &Out.Reports[It->second];
-  if (New || It->second >= Earlier)
-    Out.Reports.push_back(std::move(*R));
-  else if (!Same->Object && R->Before == Same->Before)
-    Same->Object = R->Object;
+      Of(R->Compared == R->Threshold ? R->Before : nullptr), Number);
+  if (!New && It->second < Earlier)
+    return;
+  Placed.try_emplace(Of(R->Before), Number);
+  Out.Reports.push_back(std::move(*R));
 }
 
 void Applier::addReports(const PlacedPlan &P) {
