@@ -19,20 +19,51 @@ static cl::opt<unsigned> MaxCopied(
     cl::desc(
         "Variables that a value is followed to by copies of whole objects"));
 
+/// A getter that returns an object by value makes a copy in each caller.
+static cl::opt<unsigned> MaxCopiedLocals(
+    "tpc-max-local-copies", cl::Hidden, cl::init(256),
+    cl::desc("The same, with locals that the limit does not count"));
+
+/// True if \p L is found by its class, and the variables \p Found, without a
+/// root, do not stand for it yet.
+bool AccessIndex::isSearchedByClass(const Location &L,
+                                    const Locations &Found) const {
+  ArrayRef<Step> Path = L.Path;
+  return Alias.isReachable(L) && none_of(Found, [&](const Location &K) {
+           return !K.Root && !K.Path.empty() && K.Path.size() <= Path.size() &&
+                  StepPath::areSame(Path.take_back(K.Path.size()), K.Path);
+         });
+}
+
 /// \p L and the variables to which copies of whole objects bring its value or,
-/// with \p Backward, from which they take it.
-const Locations &AccessIndex::throughCopies(const Location &L, bool Backward) {
+/// with \p Backward, from which they take it. A variable that is found by its
+/// class stands for all names of it: `Node::limits` for those in the objects
+/// and lists that contain a Node. The limit does not count locals that no other
+/// function finds by their class: few accesses are theirs.
+const AccessIndex::Connected &AccessIndex::throughCopies(const Location &L,
+                                                         bool Backward) {
   auto [It, New] = (Backward ? this->Backward : Forward).try_emplace(L);
-  Locations &All = It->second;
+  Locations &All = It->second.All;
+  bool &IsCut = It->second.IsCut;
   if (!New)
-    return All;
-  All.push_back(L);
+    return It->second;
+  unsigned Counted = 0;
+  auto Add = [&](Location Other) {
+    bool Counts = isSearchedByClass(Other, All);
+    if (any_of(All, [&](const Location &K) { return K.isSame(Other); }) ||
+        (!Counts && Alias.isReachable(Other)))
+      return;
+    Counted += Counts;
+    All.push_back(std::move(Other));
+    IsCut = Counted >= MaxCopied || All.size() >= MaxCopiedLocals;
+  };
+  Add(L);
   const ObjectIndex &In = Backward ? TargetIndex : SourceIndex;
   ArrayRef<CopyEnd> Ends = Backward ? Targets : Sources;
-  for (unsigned Next = 0; Next < All.size() && All.size() < MaxCopied; ++Next) {
+  for (unsigned Next = 0; Next < All.size() && !IsCut; ++Next) {
     const Location Here = All[Next];
     In.eachAround(Here, [&](unsigned N) {
-      if (All.size() >= MaxCopied)
+      if (IsCut)
         return;
       auto Rest = Alias.partOf(Ends[N].Object, Here);
       if (!Rest)
@@ -40,20 +71,19 @@ const Locations &AccessIndex::throughCopies(const Location &L, bool Backward) {
       const Copy &C = Copies[Ends[N].Copy];
       for (Location Other : Backward ? C.From : C.To) {
         Types.extend(Other, *Rest);
-        if (All.size() < MaxCopied &&
-            none_of(All, [&](const Location &K) { return K.isSame(Other); }))
-          All.push_back(std::move(Other));
+        if (!IsCut)
+          Add(std::move(Other));
       }
     });
   }
-  return All;
+  return It->second;
 }
 
 SmallVector<Instruction *, 4> AccessIndex::copiesTo(const Location &L,
                                                     DenseSet<unsigned> &Known) {
   SmallSetVector<Instruction *, 4> Found;
   auto Add = [&](unsigned N) { Found.insert(Copies[Targets[N].Copy].I); };
-  for (const Location &Here : throughCopies(L, /*Backward=*/true)) {
+  for (const Location &Here : throughCopies(L, /*Backward=*/true).All) {
     TargetIndex.eachOnPath(Here, [&](unsigned N) {
       if (Alias.partOf(Targets[N].Object, Here))
         Add(N);
@@ -66,14 +96,14 @@ SmallVector<Instruction *, 4> AccessIndex::copiesTo(const Location &L,
 }
 
 bool AccessIndex::reaches(const Location &From, const Location &To) {
-  return any_of(throughCopies(From, /*Backward=*/false),
+  return any_of(throughCopies(From, /*Backward=*/false).All,
                 [&](const Location &Here) { return Alias.mayBe(Here, To); });
 }
 
 AccessIndex::Found<AccessIndex::Writes>
 AccessIndex::writesOf(const Location &L) {
   Found<Writes> Out;
-  const Locations &All = throughCopies(L, /*Backward=*/true);
+  const Locations &All = throughCopies(L, /*Backward=*/true).All;
   for (const Location &Here : All) {
     // Several fields that are read together in a register: any of them.
     if (isa_and_nonnull<StructType>(elementOf(Types.typeAt(Here))))
@@ -95,7 +125,7 @@ AccessIndex::writesOf(const Location &L) {
 
 AccessIndex::Found<AccessIndex::Reads> AccessIndex::readsOf(const Location &L) {
   Found<Reads> Out;
-  const Locations &All = throughCopies(L, /*Backward=*/false);
+  const Locations &All = throughCopies(L, /*Backward=*/false).All;
   for (const Location &Here : All) {
     Reads &To = &Here == All.begin() ? Out.Own : Out.Copied;
     LoadIndex.eachAt(Here, [&](unsigned N) {

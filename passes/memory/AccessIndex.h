@@ -64,6 +64,11 @@ public:
   /// True if copies of whole objects can bring the value at \p From to \p To,
   /// or the two can be the same variable.
   bool reaches(const Location &From, const Location &To);
+  /// True if the value at \p L is copied to more variables than reaches() and
+  /// readsOf() follow.
+  bool isCopiedOn(const Location &L) {
+    return throughCopies(L, /*Backward=*/false).IsCut;
+  }
   /// The copies of whole objects that give \p L, or variables copied to it, a
   /// value. Any object of a class can be the one that a variable without a root
   /// is in: the copies of a class that is in \p Known are left out, and the
@@ -101,7 +106,14 @@ private:
     unsigned Copy;
     Location Object;
   };
-  const Locations &throughCopies(const Location &L, bool Backward);
+  /// The variables that copies connect with one, itself included; IsCut if
+  /// they are not all.
+  struct Connected {
+    Locations All;
+    bool IsCut = false;
+  };
+  bool isSearchedByClass(const Location &L, const Locations &Found) const;
+  const Connected &throughCopies(const Location &L, bool Backward);
 
   const Aliases &Alias;
   LocationTypes &Types;
@@ -111,7 +123,7 @@ private:
   llvm::SmallVector<Copy, 0> Copies;
   llvm::SmallVector<CopyEnd, 0> Targets, Sources;
   /// Cached results: the variables that copies connect with a variable.
-  LocationMap<Locations> Backward, Forward;
+  LocationMap<Connected> Backward, Forward;
   LocationIndex LoadIndex, StoreIndex, HandedIndex;
   ObjectIndex TargetIndex, SourceIndex;
   /// Of all writes, numbered as in PartWrites.

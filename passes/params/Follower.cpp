@@ -134,10 +134,37 @@ static bool isOnlyCompared(const Value &V) {
   return IsCompared && Work.empty();
 }
 
+/// True if the function of \p Merge, the value of a local variable, computes
+/// another value of the same variable from it.
+static bool isComputedFurther(const Instruction &Merge) {
+  constexpr unsigned Most = 64;
+  SmallVector<std::pair<const Instruction *, bool>, 8> Work{{&Merge, false}};
+  SmallPtrSet<const Instruction *, 8> Seen[2];
+  while (!Work.empty() && Seen[0].size() + Seen[1].size() < Most) {
+    auto [Next, IsComputed] = Work.pop_back_val();
+    if (!Seen[IsComputed].insert(Next).second)
+      continue;
+    if (IsComputed && isSameLocal(*Next, Merge))
+      return true;
+    for (const User *U : Next->users()) {
+      const auto *Call = dyn_cast<IntrinsicInst>(U);
+      const auto *I = cast<Instruction>(U);
+      if (isa<CastInst, PHINode, SelectInst>(I))
+        Work.push_back({I, IsComputed});
+      else if (isa<UnaryOperator, BinaryOperator>(I) ||
+               (Call && Call->doesNotAccessMemory() &&
+                !Call->getType()->isVoidTy()))
+        Work.push_back({I, true});
+    }
+  }
+  return false;
+}
+
 /// True if \p Merge takes the smaller or larger of the followed value, for
 /// which \p IsOwn holds, and of a measured variable that it is then stored to,
 /// as in `x = std::min(x, limit)`: what that is compared with later is not
-/// compared with the limit. A variable that is only compared is a threshold.
+/// compared with the limit. So is a variable of its own that the program
+/// computes further. A variable that is only compared is a threshold.
 bool Follower::limitsVariable(const Instruction &Merge,
                               function_ref<bool(const Value *)> IsOwn) {
   if (IsOutcome)
@@ -157,7 +184,8 @@ bool Follower::limitsVariable(const Instruction &Merge,
            });
   };
   return any_of(limitedBy(Merge), [&](const Limited &L) {
-    return !IsOwn(L.Side) && IsVariable(L) && !Configuration.has(L.Compared);
+    return !IsOwn(L.Side) && (IsVariable(L) || isComputedFurther(Merge)) &&
+           !Configuration.has(L.Compared);
   });
 }
 
@@ -197,18 +225,30 @@ const Follower::Stored &Follower::describeStore(StoreInst &Store) {
   return *Known;
 }
 
+/// True if a function of the program moves the variable \p L on, as a mean or a
+/// sum.
+static bool isMovedOn(const Location &L, AccessIndex &Accesses) {
+  return any_of(Accesses.writesOf(L).Own, [](const Instruction *Write) {
+    const auto *Store = dyn_cast<StoreInst>(Write);
+    return Store && isMovedOn(*Store);
+  });
+}
+
 /// True if \p To is one variable that holds a threshold, whatever it was
 /// computed from: not an element of an array or of a container, which holds
 /// data, and no mean or sum that the program moves on elsewhere.
 bool Follower::keepsFormula(const Stored &To) const {
   return To.Targets == 1 && all_of(To.Written, [&](const ScalarPart &P) {
            return !P.Size && P.Where.isOne() && !P.Where.isElement() &&
-                  none_of(Accesses.writesOf(P.Where).Own,
-                          [](const Instruction *Write) {
-                            const auto *Store = dyn_cast<StoreInst>(Write);
-                            return Store && isMovedOn(*Store);
-                          });
+                  !isMovedOn(P.Where, Accesses);
          });
+}
+
+/// True if \p To is an element of an array or of a container.
+static bool isInArray(ArrayRef<ScalarPart> To) {
+  return any_of(To, [](const ScalarPart &P) {
+    return !P.Where.isOne() || P.Where.isElement();
+  });
 }
 
 /// The value goes on to the loads of the variable that it is stored to.
@@ -219,12 +259,25 @@ void Follower::store(const State &S, StoreInst &Store) {
   if ((S.How.Variables && isMovedOn(Store)) ||
       (isMeasured(S.How) && !keepsFormula(To)))
     return stopAt(ValueEnd::Mixed, &Store);
+  // A measured value that a parameter limits, and that is changed further.
+  if (S.How.Merged && !IsOutcome && !Configuration.has(S.V) &&
+      any_of(
+          To.Written,
+          [&](const ScalarPart &P) { return isMovedOn(P.Where, Accesses); }) &&
+      !isThresholdIn(Store))
+    return stopAt(ValueEnd::Mixed, &Store);
   if (To.Targets == 0)
     stopAt(ValueEnd::UnknownPointer, &Store);
   else if (To.Targets > MaxTargets)
     stopAt(ValueEnd::ManyTargets, &Store);
   else if (To.Loads.empty() && !IsOutcome)
-    stopAt(ValueEnd::Unread, &Store);
+    stopAt(any_of(To.Written,
+                  [&](const ScalarPart &P) {
+                    return Accesses.isCopiedOn(P.Where);
+                  })
+               ? ValueEnd::ManyTargets
+               : ValueEnd::Unread,
+           &Store);
   if (To.Loads.empty() && !S.In)
     return;
   State Next{S.V, S.How, nullptr, false, S.In};
@@ -261,6 +314,12 @@ void Follower::load(const State &S, Instruction &Write,
       stopAt(ValueEnd::Mixed, Load);
       continue;
     }
+    // A list of what was measured, some of it limited by a parameter.
+    if (S.How.Merged && !IsOutcome && (isInArray(Written) || isInArray(Read)) &&
+        !Configuration.has(S.V)) {
+      stopAt(ValueEnd::Mixed, Load);
+      continue;
+    }
     if (Read.size() > 1 && limitsVariable(*Load, [&](const Value *Side) {
           return any_of(Pointers.resolve(Side, true), [&](const Location &L) {
             return any_of(Written, [&](const ScalarPart &From) {
@@ -269,6 +328,10 @@ void Follower::load(const State &S, Instruction &Write,
           });
         }))
       continue;
+    Next.How.Merged |= Read.size() > 1 && !choiceOf(*Load) &&
+                       any_of(limitedBy(*Load), [&](const Limited &L) {
+                         return !Configuration.has(L.Compared);
+                       });
     bool IsWide = any_of(Read, [](const ScalarPart &P) { return P.Size; });
     if (!WasWide && !IsWide) {
       Next.In = S.In;

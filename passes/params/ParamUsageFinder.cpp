@@ -474,12 +474,16 @@ void Follower::followRead(unsigned N) {
     push({R.Call, {}, nullptr, true});
   if (R.Target) {
     SmallVector<LoadInst *, 8> Loads = Writes.usesOf(*R.Call, R.Target);
+    Locations To = Pointers.resolve(R.Target, true);
     if (Loads.empty())
-      stopAt(Pointers.resolve(R.Target, true).empty() ? ValueEnd::UnknownPointer
-                                                      : ValueEnd::Unread,
+      stopAt(To.empty() ? ValueEnd::UnknownPointer
+             : any_of(To,
+                      [&](const Location &L) { return Accesses.isCopiedOn(L); })
+                 ? ValueEnd::ManyTargets
+                 : ValueEnd::Unread,
              R.Call);
     SmallVector<ScalarPart, 1> Written;
-    for (Location &L : Pointers.resolve(R.Target, true))
+    for (Location &L : To)
       Written.push_back({std::move(L)});
     load({R.Call, {}, nullptr, true}, *R.Call, Written, Loads);
   }
