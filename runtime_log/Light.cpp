@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sched.h>
+#include <tuple>
 #include <unordered_map>
 
 namespace tpc {
@@ -76,7 +77,13 @@ struct LightSite {
   void settle();
   /// Goes on to count in \p To, from nothing; the site is locked.
   void goOnIn(SiteWords &To);
-  bool isEmpty() const { return !Kept.Count && !Passed && !Unseen.load(); }
+  uint64_t samples() const { return Kept.Count - EarlierSamples; }
+  bool hasNews() const {
+    return Kept.Flops || Turns || ThresholdMoved ||
+           Kept.Threshold != ToldThreshold;
+  }
+  /// Ends a period; the site is locked.
+  void endPeriod();
   /// One evaluation; the site is locked.
   void inspect(Thread &T, const Report &R);
   void inspectOutcome(Thread &T, const Report &R);
@@ -106,6 +113,10 @@ struct LightSite {
   uint64_t Blind;        ///< those of them between which flops are not seen
   uint64_t Pairs, Turns; ///< successive evaluations seen while blind, and flops
   uint64_t Before = 0;   ///< evaluations in the previous period
+  /// Evaluations and samples that are kept from before the current period: the
+  /// last ones had no summary.
+  uint64_t EarlierCount, EarlierSamples;
+  double ToldThreshold = NAN; ///< in the last summary
   int64_t BeginSteady, BeginRos;
   uint32_t LastThread = 0;
   bool IsShared = false; ///< by several threads: some counts are lost
@@ -144,7 +155,7 @@ void LightSite::clear() {
   Kept.DiffMax = Kept.High = Most = -HUGE_VAL;
   Kept.Site = Of.Number;
   ThresholdMoved = false;
-  Passed = Blind = Pairs = Turns = 0;
+  Passed = Blind = Pairs = Turns = EarlierCount = EarlierSamples = 0;
 }
 
 void LightSite::settle() {
@@ -165,10 +176,10 @@ void LightSite::goOnIn(SiteWords &To) {
 /// How many evaluations to pass over until the next sample.
 uint64_t LightSite::stride() {
   uint64_t Usual = Before / Samples;
-  if (Kept.Count < Samples && Usual < 2)
+  if (samples() < Samples && Usual < 2)
     return 0;
   uint64_t Doubled =
-      Kept.Count < Samples ? 0 : (Kept.Count - Samples) / SamplesOfStride + 1;
+      samples() < Samples ? 0 : (samples() - Samples) / SamplesOfStride + 1;
   uint64_t Mean =
       std::min(std::max<uint64_t>(Usual, 1) << std::min<uint64_t>(Doubled, 24),
                LongestStride);
@@ -181,7 +192,7 @@ uint64_t LightSite::stride() {
 
 void LightSite::chooseNext(bool Result) {
   SiteWords *At = Words.load(std::memory_order_acquire);
-  bool IsHot = Kept.Count >= Samples || Before / Samples >= 2;
+  bool IsHot = samples() >= Samples || Before / Samples >= 2;
   if (!IsBlind || !IsHot) {
     Next = Usual;
     Counts[Result].set(At->Left[Result], static_cast<int32_t>(stride()));
@@ -404,14 +415,24 @@ void beginLight(bool Forgets) {
   });
 }
 
-/// The next period is sampled from its beginning if the countdown would not end
-/// in it.
-static void reopen(LightSite &L, uint64_t Count) {
-  SiteWords *At = L.Words.load(std::memory_order_relaxed);
+void LightSite::endPeriod() {
+  settle();
+  Passed += Unseen.exchange(0, std::memory_order_relaxed);
+  const uint64_t Count = Kept.Count + Passed;
+  Before = Count - EarlierCount;
+  EarlierCount = Count;
+  EarlierSamples = Kept.Count;
+  IsBlind = false;
+  if (!Before)
+    return;
+  // The next period is sampled from its beginning if the countdown would not
+  // end in it.
+  SiteWords *At = Words.load(std::memory_order_relaxed);
   for (int Result = 0; Result < 2; ++Result)
-    if (static_cast<uint64_t>(std::max(0, At->Left[Result].load())) * 2 > Count)
-      L.Counts[Result].set(At->Left[Result], 0);
-  L.Next = LightSite::Usual;
+    if (static_cast<uint64_t>(std::max(0, At->Left[Result].load())) * 2 >
+        Before)
+      Counts[Result].set(At->Left[Result], 0);
+  Next = Usual;
 }
 
 void releaseWords(const Site &S) {
@@ -448,44 +469,78 @@ static void handWordsTo(LightSite &L) {
   Owner->second = &L;
 }
 
-uint64_t flushLight(Sink &To, bool IsEnd) {
-  int64_t Steady = Clock::now(), Ros = rosTime();
-  uint64_t Sent = 0;
+namespace {
+/// A site that has something to summarise.
+struct Waiting {
+  LightSite *Of;
+  bool IsNews, IsOld;
+  int64_t Since;
+
+  /// What comes first is smaller.
+  std::tuple<bool, bool, int64_t, uint32_t> urgency() const {
+    return {!IsOld, !IsNews, Since, Of->Of.Number};
+  }
+};
+} // namespace
+
+/// Ends the period of all sites, and returns those that have a sample; with
+/// \p IsEnd, also those that have none.
+static std::vector<Waiting> endPeriods(int64_t Steady, int64_t Ros, bool IsEnd,
+                                       const SummaryLimit &Limit) {
+  std::vector<Waiting> Found;
   forEachLight([&](LightSite &L) {
+    // If it is in use, its period becomes longer.
+    if (!L.lock())
+      return;
+    Unlocker Guard{L};
+    L.endPeriod();
+    if (!L.EarlierCount) {
+      L.BeginSteady = Steady;
+      L.BeginRos = Ros;
+    } else if (L.Kept.Count || IsEnd) {
+      Found.push_back({&L, L.hasNews(),
+                       Steady - L.BeginSteady >= Limit.OldestNs,
+                       L.BeginSteady});
+    }
+  });
+  return Found;
+}
+
+void flushLight(Sink &To, bool IsEnd, const SummaryLimit &Limit) {
+  int64_t Steady = Clock::now(), Ros = rosTime();
+  std::vector<Waiting> Found = endPeriods(Steady, Ros, IsEnd, Limit);
+  if (!IsEnd && Found.size() > Limit.Most) {
+    std::sort(Found.begin(), Found.end(),
+              [](const Waiting &A, const Waiting &B) {
+                return A.urgency() < B.urgency();
+              });
+    Found.resize(Limit.Most);
+  }
+  // Those of one span follow each other.
+  std::sort(Found.begin(), Found.end(), [](const Waiting &A, const Waiting &B) {
+    return std::make_pair(A.Since, A.Of->Of.Number) <
+           std::make_pair(B.Since, B.Of->Of.Number);
+  });
+  for (const Waiting &W : Found) {
+    LightSite &L = *W.Of;
     Summary S;
     {
-      // If it is in use, its period becomes longer.
       if (!L.lock())
-        return;
+        continue;
       Unlocker Guard{L};
       L.settle();
-      L.Passed += L.Unseen.exchange(0, std::memory_order_relaxed);
-      uint64_t Count = L.Kept.Count + L.Passed;
-      if (Count)
-        reopen(L, Count);
-      L.Before = Count;
-      L.IsBlind = false;
-      if (!Count) {
-        L.BeginSteady = Steady;
-        L.BeginRos = Ros;
-        return;
-      }
-      // Without a sample there is nothing to say yet.
-      if (!L.Kept.Count && !IsEnd)
-        return;
       S = L.summary(Steady, Ros);
       L.catchUp();
+      L.ToldThreshold = L.Kept.Threshold;
       L.clear();
       L.BeginSteady = Steady;
       L.BeginRos = Ros;
     }
     To.take(S);
-    ++Sent;
-  });
+  }
   forEachLight(handWordsTo);
   Began.Steady = Steady;
   Began.Ros = Ros;
-  return Sent;
 }
 
 void lightAfterFork() {

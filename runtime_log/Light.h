@@ -32,9 +32,18 @@ bool isPassedOver(const Site &S, bool Result);
 /// before is forgotten: it was while another policy held.
 void beginLight(bool Forgets);
 
-/// Ends a period: passes the summaries to \p To and begins a new period.
-/// Returns how many there were. With \p IsEnd, also counts what has no sample.
-uint64_t flushLight(Sink &To, bool IsEnd);
+/// How many summaries a flush may pass on.
+struct SummaryLimit {
+  uint64_t Most = UINT64_MAX;
+  /// Those of sites that have none for so long come first.
+  int64_t OldestNs = INT64_MAX;
+};
+
+/// Ends a period: passes summaries to \p To and begins a new period. If there
+/// are more than \p Limit allows, those with something new come first, then
+/// those that have waited longest; the periods of the others become longer.
+/// With \p IsEnd, there is no limit, and what has no sample is counted, too.
+void flushLight(Sink &To, bool IsEnd, const SummaryLimit &Limit);
 
 /// The object of \p S is gone: what is made at its address counts elsewhere.
 void releaseWords(const Site &S);

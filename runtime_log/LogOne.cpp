@@ -25,9 +25,14 @@ bool isOverCap(Site &S, bool IsFlop) {
       !ProcessCap.load(std::memory_order_relaxed))
     return false;
   int64_t Now = Clock::now();
-  DropCount *Over = !S.Used.takes(SiteCap, Now)            ? &S.OverSiteCap
-                    : !ProcessMeter.takes(ProcessCap, Now) ? &S.OverProcessCap
-                                                           : nullptr;
+  auto ProcessTakes = [&] {
+    return NowMode.load(std::memory_order_relaxed) == Mode::Light
+               ? FairProcessMeter.takes(ProcessCap, Now, S.OfProcess)
+               : ProcessMeter.takes(ProcessCap, Now);
+  };
+  DropCount *Over = !S.Used.takes(SiteCap, Now) ? &S.OverSiteCap
+                    : !ProcessTakes()           ? &S.OverProcessCap
+                                                : nullptr;
   if (!Over)
     return false;
   Over->Count.fetch_add(1, std::memory_order_relaxed);

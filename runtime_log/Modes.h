@@ -32,8 +32,11 @@ extern std::atomic<LogFile *> NowFile;
 extern std::atomic<Sink *> NowSink;
 /// Whether the chosen sink is the file.
 extern std::atomic<bool> ReportsToFile;
+/// In a second of real time.
 extern std::atomic<uint64_t> SiteCap, ProcessCap;
 extern Meter ProcessMeter;
+/// In place of it, under the policy `light`.
+extern FairMeter FairProcessMeter;
 
 /// Set before the mode changes from NotStarted.
 extern Sites *TheSites;

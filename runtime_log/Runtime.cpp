@@ -7,6 +7,7 @@
 #include "ReadNames.h"
 #include "Ros.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -24,9 +25,13 @@ static constexpr int64_t Never = INT64_MAX;
 /// Until then the rate of the counter is not known well enough to use it.
 static constexpr int64_t FirstAdjustNs = 10'000'000;
 static constexpr int64_t Jump = 1'000'000;
-/// What `light` sends of summaries.
+/// What `light` sends of summaries, of about 100 bytes each.
 static constexpr uint64_t SummariesOfSecond = 120;
-static constexpr int64_t LongestStretch = 16;
+/// Nothing is new about a site for so many periods: it comes next all the same.
+static constexpr int64_t PeriodsOfQuiet = 16;
+/// If simulated time is faster than this, what `light` may send does not become
+/// more any more.
+static constexpr int64_t FastestClock = 10;
 
 //===----------------------------------------------------------------------===//
 // The state that log_one reads
@@ -39,6 +44,7 @@ std::atomic<bool> ReportsToFile{false};
 Sites *TheSites = nullptr;
 std::atomic<uint64_t> SiteCap{0}, ProcessCap{0};
 Meter ProcessMeter;
+FairMeter FairProcessMeter;
 
 namespace {
 
@@ -101,6 +107,9 @@ private:
   bool choose(const Config &C);
   bool isSummarised() const;
   void flush(bool IsEnd);
+  int64_t periodNs() const;
+  void followClock();
+  void setCaps(const Config &C);
   void startHelper();
   void help();
   int64_t runDue(int64_t Now);
@@ -131,9 +140,10 @@ private:
   // Used by the helper only.
   int64_t NextRos = 0, NextPoll = 0, NextPeriod = 0, NextSecond = 0;
   int64_t RealOffset = 0;
-  /// Periods of `light` are so many times longer, because many sites are
-  /// evaluated.
-  int64_t Stretch = 1;
+  /// The last reading of the steady time and of the simulated one.
+  int64_t LastSteady = 0, LastRos = 0;
+  /// Nanoseconds of real time in a second of the robot's clock.
+  int64_t ClockSecond = Second;
   bool HasToldOfCaps = false;
   bool HasToldOfFile = false; ///< while Changing is locked
   std::atomic<uint64_t> DroppedInAll{0};
@@ -238,8 +248,7 @@ bool Runtime::choose(const Config &C) {
     NowFile.load()->writePolicy(C.filledIn());
   }
   Filled = C.filledIn();
-  SiteCap = Filled.SiteCap;
-  ProcessCap = Filled.ProcessCap;
+  setCaps(C);
   ReportsToFile = C.Sink == SinkKind::File;
   SlotsHome = ReportsToFile ? NowFile.load() : nullptr;
   Sink *Old = NowSink.exchange(&sinkOf(C.Sink));
@@ -397,7 +406,7 @@ int64_t Runtime::runDue(int64_t Now) {
   }
   if (HasPeriods && Now >= NextPeriod) {
     flush(/*IsEnd=*/false);
-    int64_t Period = static_cast<int64_t>(Filled.PeriodNs) * Stretch;
+    int64_t Period = periodNs();
     NextPeriod += Period;
     if (NextPeriod <= Now)
       NextPeriod = Now + Period;
@@ -437,19 +446,57 @@ void Runtime::flush(bool IsEnd) {
   Sink &S = *NowSink.load();
   if (Filled.Policy == Policy::Edges)
     return flushEdges(S, /*All=*/IsEnd);
-  uint64_t Summaries = flushLight(S, IsEnd);
-  if (Held.Sink == SinkKind::File)
+  SummaryLimit Limit;
+  if (Held.Sink != SinkKind::File) {
+    Limit.Most =
+        std::max<uint64_t>(SummariesOfSecond * Filled.PeriodNs / Second, 1);
+    Limit.OldestNs = periodNs() * PeriodsOfQuiet;
+  }
+  flushLight(S, IsEnd, Limit);
+}
+
+/// The default period and the default caps of `light` are those of the robot's
+/// clock: a recording of a simulated robot that is faster than real time has as
+/// much of each second as one of a real robot.
+int64_t Runtime::periodNs() const {
+  const auto Period = static_cast<int64_t>(Filled.PeriodNs);
+  return Held.PeriodNs == Config::Usual && Filled.Policy == Policy::Light
+             ? std::max<int64_t>(Period / 1000 * (ClockSecond / 1'000'000), 1)
+             : Period;
+}
+
+void Runtime::setCaps(const Config &C) {
+  auto Scaled = [&](uint64_t Set, uint64_t Cap) {
+    return Set == Config::Usual && Filled.Policy == Policy::Light
+               ? Cap * Second / static_cast<uint64_t>(ClockSecond)
+               : Cap;
+  };
+  SiteCap = Scaled(C.SiteCap, Filled.SiteCap);
+  ProcessCap = Scaled(C.ProcessCap, Filled.ProcessCap);
+}
+
+/// Measures how fast the simulated time is.
+void Runtime::followClock() {
+  const int64_t Steady = Clock::steady();
+  const int64_t Ros = TimeIsSimulated ? rosNow() : 0;
+  int64_t Now = Second;
+  if (LastRos > 0 && Ros > LastRos && Steady > LastSteady)
+    Now = std::clamp(
+        static_cast<int64_t>(static_cast<double>(Second) *
+                             static_cast<double>(Steady - LastSteady) /
+                             static_cast<double>(Ros - LastRos)),
+        Second / FastestClock, Second);
+  LastSteady = Steady;
+  LastRos = Ros;
+  if (Now == ClockSecond)
     return;
-  // About 100 bytes each.
-  uint64_t Most = SummariesOfSecond * Filled.PeriodNs * Stretch / Second;
-  if (Summaries > Most && Stretch < LongestStretch)
-    Stretch *= 2;
-  else if (Summaries < Most / 4 && Stretch > 1)
-    Stretch /= 2;
+  ClockSecond = Now;
+  setCaps(Held);
 }
 
 void Runtime::eachSecond() {
   Clock::adjust();
+  followClock();
   giveLate();
   if (Held.Sink == SinkKind::File)
     NowFile.load()->sync();
@@ -477,9 +524,9 @@ void Runtime::accountForDrops() {
     if (Filled.Policy == Policy::Light && *Key && IsAsked &&
         !std::exchange(HasToldOfCaps, true))
       warn(std::string("comparison ") + Key + " changes more often than " +
-           (Why == DropReason::SiteCap
-                ? std::to_string(SiteCap) + " times a second (TPC_SITE_CAP)"
-                : "TPC_PROCESS_CAP allows") +
+           (Why == DropReason::SiteCap ? std::to_string(Filled.SiteCap) +
+                                             " times a second (TPC_SITE_CAP)"
+                                       : "TPC_PROCESS_CAP allows") +
            ": further changes are only counted, here and elsewhere");
   };
   for (uint32_t Number = 1; Number <= sites().size(); ++Number) {

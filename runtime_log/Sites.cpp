@@ -5,6 +5,7 @@
 #include "ReadNames.h"
 #include "Runtime.h"
 
+#include <algorithm>
 #include <new>
 #include <utility>
 
@@ -24,6 +25,29 @@ bool Meter::takes(uint64_t Cap, int64_t Ns) {
                                    std::memory_order_relaxed))
       return true;
   }
+}
+
+bool FairMeter::takes(uint64_t Cap, int64_t Ns, Share &Of) {
+  if (!Cap)
+    return true;
+  constexpr int64_t Kept = 10'000'000'000, Eighth = Kept / 8;
+  constexpr uint64_t MostHad = 3, Bits = 8;
+  const auto Round = static_cast<uint64_t>(Ns / Kept) + 1;
+  const uint64_t Before = Of.Had.load(std::memory_order_relaxed);
+  const uint64_t Had = Before >> Bits == Round ? Before & 0xFF : 0;
+  const auto Spared = Before ? Eighth * static_cast<int64_t>(Had + 1) : 0;
+  const auto Each = static_cast<int64_t>(
+      1'000'000'000 / std::min<uint64_t>(Cap, 1'000'000'000));
+  int64_t Seen = FullAt.load(std::memory_order_relaxed), Next;
+  do {
+    Next = std::max(Seen, Ns) + Each;
+    if (Next - Ns > Kept - Spared)
+      return false;
+  } while (
+      !FullAt.compare_exchange_weak(Seen, Next, std::memory_order_relaxed));
+  Of.Had.store(Round << Bits | std::min(Had + 1, MostHad),
+               std::memory_order_relaxed);
+  return true;
 }
 
 Site::Site(std::string Text, size_t Length, uint32_t Number)

@@ -29,6 +29,29 @@ private:
   std::atomic<uint64_t> Used{0};
 };
 
+/// Shares the reports of a process among its sites. What they leave of the cap
+/// is kept, as much as comes in ten seconds. The more of that is used up, the
+/// fewer reports a site may have had in the current ten seconds to get one
+/// more; the last eighth is for sites that have not had any yet.
+class FairMeter {
+public:
+  /// What one site has had.
+  class Share {
+    friend FairMeter;
+    /// The round in the upper bits, the number of reports in it in the lower
+    /// eight.
+    std::atomic<uint64_t> Had{0};
+  };
+
+  /// Whether one more report at \p Ns, of the site of \p Of, stays within
+  /// \p Cap a second (0: no cap).
+  bool takes(uint64_t Cap, int64_t Ns, Share &Of);
+
+private:
+  /// When as much as possible will be kept, if nothing more is taken.
+  std::atomic<int64_t> FullAt{0};
+};
+
 /// What was dropped since it was last reported.
 struct DropCount {
   std::atomic<uint64_t> Count{0};
@@ -65,6 +88,7 @@ struct Site {
   std::vector<std::pair<const void *, Site *>> Instances;
   std::mutex Lock; ///< held while Last changes
   Meter Used;
+  FairMeter::Share OfProcess;
   DropCount OverSiteCap, OverProcessCap;
   /// What a store of reports gave up to make space, and the last result that it
   /// gave up. The store's lock is held while they change.

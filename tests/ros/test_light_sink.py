@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import subprocess
+import threading
 import time
 from collections import Counter
+from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
 
@@ -18,10 +21,12 @@ from pytpc.ingest.ros1 import decode_log
 from pytpc.recording.summaries import Summary
 from pytpc.ros.ros1.graph import RosGraph
 from pytpc.ros.ros1.master import Master
+from pytpc.ros.ros1.publisher import MessageType, RawPublisher, encode_time
 from pytpc.ros.ros1.subscriber import RawSubscriber
 
 __all__ = ["graph", "nodes"]
 ROSOUT = "/rosout"
+CLOCK = MessageType("rosgraph_msgs/Clock", "a9c97c1d230cfc112e270351a944ee47", "time clock\n")
 
 
 class Listener:
@@ -62,7 +67,7 @@ def run(graph: RosGraph, nodes: Path, *options: str, **env: str) -> tuple[Listen
     """What came, how many reports were made, and the node's output."""
     kept = {name: text for name, text in os.environ.items() if not name.startswith("TPC_")}
     listener = Listener(graph)
-    command = [str(nodes / "reporter"), *options, "--stay=1.5"]
+    command = [str(nodes / "reporter"), "--stay=1.5", *options]
     process = graph.start("reporter", command, env={**kept, **env})
     listener.listen(process.popen)
     return listener, made(process)["running"], process.log.read_text()
@@ -89,6 +94,53 @@ def test_flops_are_sent_up_to_the_cap_and_the_node_says_so_once(graph, nodes):
     assert all(a.result != b.result for a, b in pairwise(flops))
     assert sum(item.flops for item in listener.items if isinstance(item, Summary)) == count - 1
     assert output.count("changes more often than 10 times a second") == 1
+
+
+# 200 sites, and 120 summaries a second: the periods of some become longer, and nothing is missing.
+def test_summaries_of_many_comparisons_come_in_rounds(graph, nodes):
+    options = ("--rate=4000", "--seconds=3", "--threads=200", "--stay=5")
+    listener, count, _ = run(graph, nodes, *options)
+    assert listener.counts == {key(THREAD + i): count // 200 for i in range(200)}
+    ends = Counter(item.end_ns for item in listener.items if isinstance(item, Summary))
+    assert max(ends.values()) == 120
+    assert len(ends) >= 3
+
+
+@contextlib.contextmanager
+def simulated(graph: RosGraph, speed: int) -> Iterator[None]:
+    """A clock that is so many times as fast as real time."""
+    graph.call("setParam", "/use_sim_time", True)
+    clock = RawPublisher(Master(graph.uri, "/player"), {"/clock": CLOCK})
+    clock.register()
+    done = threading.Event()
+
+    def play() -> None:
+        begin = time.monotonic_ns()
+        while not done.wait(0.01):
+            clock.publish("/clock", encode_time(10**12 + speed * (time.monotonic_ns() - begin)))
+
+    player = threading.Thread(target=play)
+    player.start()
+    try:
+        yield
+    finally:
+        done.set()
+        player.join()
+        clock.close()
+        graph.call("deleteParam", "/use_sim_time")
+
+
+# As above, but a second of the robot's clock is a fifth of a real one: 50 flops of a real second
+# are sent, once the node has seen how fast the clock is. A cap that was set counts real time.
+@pytest.mark.parametrize(
+    ("settings", "least", "most"), [({}, 90, 200), ({"TPC_SITE_CAP": "10"}, 25, 60)]
+)
+def test_the_default_caps_count_seconds_of_the_robot(graph, nodes, settings, least, most):
+    with simulated(graph, 5):
+        options = ("--rate=200", "--seconds=4", "--flops=1", "--wait=1")
+        listener, *_ = run(graph, nodes, *options, **settings)
+    flops = [item for item in listener.items if isinstance(item, Seen)]
+    assert least <= len(flops) <= most
 
 
 def test_the_thesis_lines_by_name(graph, nodes):

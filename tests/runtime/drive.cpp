@@ -449,6 +449,19 @@ int inPlace(const Arguments &A) {
   return 0;
 }
 
+/// turning SITES TURNS MS: in each turn the outcomes of all sites change, in
+/// the same order, and then the program waits.
+int turning(const Arguments &A) {
+  unsigned long Sites = std::stoul(A[0]), Turns = std::stoul(A[1]);
+  Keys K(Sites);
+  for (unsigned long Turn = 0; Turn < Turns; ++Turn) {
+    for (unsigned long I = 0; I < Sites; ++I)
+      log_one(K[I], Turn % 2, static_cast<double>(Turn), 0.5, Turn % 2);
+    waitMs(std::stol(A[2]));
+  }
+  return 0;
+}
+
 } // namespace
 
 int main(int Count, char **Words) {
@@ -465,6 +478,7 @@ int main(int Count, char **Words) {
       {"objects", objects},
       {"objects-threads", objectsOfThreads},
       {"in-place", inPlace},
+      {"turning", turning},
       {"names", names},
       {"closed", closed},
       {"cancelled", cancelled},

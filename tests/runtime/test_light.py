@@ -89,6 +89,26 @@ def test_threads_share_a_site(drive, files):
         assert all(a != b for a, b in pairwise(results))
 
 
+# All sites turn 20 times in two seconds, the same ones first. What the node may send in ten seconds
+# is there at once: 500 flops; 50 more come in each second. The first evaluation of a site is no
+# flop, and the outcome of the last turn is reported at the end in any case: they do not count here.
+@pytest.mark.parametrize("sites", [200, 800])
+def test_each_site_reports_a_flop_before_one_reports_many(drive, files, sites):
+    settings = {**LIGHT, "period": 3600, "process_cap": 50}
+    assert drive("turning", sites, 21, 100, **settings).returncode == 0
+    file = log_file.read(files()[0])
+    flops = Counter(dict.fromkeys(map(key, range(sites)), 0))
+    flops.update(file.keys[site] for _, site, _, _, cmp, *_ in file.all_reports if 0 < cmp < 20)
+    steady = [report[0] for report in file.all_reports]
+    assert sum(flops.values()) <= 501 + 50 * (max(steady) - min(steady)) / 1e9
+    if sites == 200:
+        assert min(flops.values()) >= 1
+        assert sum(flops.values()) > 250
+    else:
+        assert sum(count > 0 for count in flops.values()) >= 500
+        assert min(flops.values()) == 1 or max(flops.values()) == 1
+
+
 def test_odd_values(drive, files):
     assert drive("odd", **LIGHT).returncode == 0
     (summary,) = log_file.read(files()[0]).all_summaries
