@@ -79,9 +79,11 @@ struct LightSite {
   void goOnIn(SiteWords &To);
   uint64_t samples() const { return Kept.Count - EarlierSamples; }
   bool hasNews() const {
-    return Kept.Flops || Turns || ThresholdMoved ||
+    return Kept.Flops || Turns || Whole.Unknown > 0 || ThresholdMoved ||
            Kept.Threshold != ToldThreshold;
   }
+  /// Adds what came since the last time to Whole.
+  void weigh();
   /// Ends a period; the site is locked.
   void endPeriod();
   /// One evaluation; the site is locked.
@@ -116,6 +118,14 @@ struct LightSite {
   /// Evaluations and samples that are kept from before the current period: the
   /// last ones had no summary.
   uint64_t EarlierCount, EarlierSamples;
+  /// What the sample says of all evaluations of the periods that ended and had
+  /// one, Covered of them: each period is sampled as often as it needs, so each
+  /// counts by its own share. Weighed is what was in the sample then.
+  struct {
+    uint64_t Covered;
+    double Far, Odd, DiffSum, AbsSum, Unknown;
+  } Whole;
+  layout::Summary Weighed;
   double ToldThreshold = NAN; ///< in the last summary
   int64_t BeginSteady, BeginRos;
   uint32_t LastThread = 0;
@@ -156,6 +166,8 @@ void LightSite::clear() {
   Kept.Site = Of.Number;
   ThresholdMoved = false;
   Passed = Blind = Pairs = Turns = EarlierCount = EarlierSamples = 0;
+  Whole = {};
+  Weighed = Kept;
 }
 
 void LightSite::settle() {
@@ -276,24 +288,38 @@ void LightSite::catchUp() {
        layout::EdgeBit);
 }
 
+void LightSite::weigh() {
+  const layout::Summary &K = Kept;
+  if (Pairs) {
+    Whole.Unknown += static_cast<double>(Blind) * static_cast<double>(Turns) /
+                     static_cast<double>(Pairs);
+    Blind = Pairs = Turns = 0;
+  }
+  const uint64_t Count = K.Count + Passed, Sampled = K.Count - Weighed.Count;
+  if (!Sampled)
+    return;
+  auto Share =
+      static_cast<double>(Count - Whole.Covered) / static_cast<double>(Sampled);
+  Whole.Far += static_cast<double>(K.Far - Weighed.Far) * Share;
+  Whole.Odd += static_cast<double>(K.Odd - Weighed.Odd) * Share;
+  Whole.DiffSum += (K.DiffSum - Weighed.DiffSum) * Share;
+  Whole.AbsSum += (K.AbsSum - Weighed.AbsSum) * Share;
+  Whole.Covered = Count;
+  Weighed = K;
+}
+
 Summary LightSite::summary(int64_t EndSteady, int64_t EndRos) {
+  weigh();
   const layout::Summary &K = Kept;
   uint64_t Count = K.Count + Passed;
-  uint64_t Usable = K.Count - K.Odd;
-  double Share =
-      K.Count ? static_cast<double>(Count) / static_cast<double>(K.Count) : 1;
-  auto Scaled = [&](uint64_t N) {
-    return static_cast<uint64_t>(std::llround(static_cast<double>(N) * Share));
+  bool IsUsable = K.Count > K.Odd;
+  double Share = Whole.Covered ? static_cast<double>(Count) /
+                                     static_cast<double>(Whole.Covered)
+                               : 1;
+  auto Scaled = [&](double N) {
+    return static_cast<uint64_t>(std::llround(N * Share));
   };
-  uint64_t Odd = Usable ? Scaled(K.Odd) : Count;
-  double More =
-      Usable ? static_cast<double>(Count - Odd) / static_cast<double>(Usable)
-             : 1;
-  uint64_t Unknown =
-      Pairs ? static_cast<uint64_t>(std::llround(static_cast<double>(Blind) *
-                                                 static_cast<double>(Turns) /
-                                                 static_cast<double>(Pairs)))
-            : 0;
+  auto Unknown = static_cast<uint64_t>(std::llround(Whole.Unknown));
   Summary S{};
   S.Key = Of.Key.c_str();
   S.Site = Of.Number;
@@ -303,12 +329,12 @@ Summary LightSite::summary(int64_t EndSteady, int64_t EndRos) {
   S.Threshold = K.Threshold;
   S.Count = Count;
   S.Flops = K.Flops + Unknown;
-  S.Far = std::min(Scaled(K.Far), Count);
-  S.Odd = Odd;
+  S.Far = std::min(Scaled(Whole.Far), Count);
+  S.Odd = IsUsable ? std::min(Scaled(Whole.Odd), Count) : Count;
   S.DiffMin = K.DiffMin;
   S.DiffMax = K.DiffMax;
-  S.DiffSum = Passed ? K.DiffSum * More : K.DiffSum;
-  S.AbsSum = Passed ? K.AbsSum * More : K.AbsSum;
+  S.DiffSum = Passed ? Whole.DiffSum * Share : K.DiffSum;
+  S.AbsSum = Passed ? Whole.AbsSum * Share : K.AbsSum;
   S.Low = K.Low;
   S.High = K.High;
   S.BeginSteady = BeginSteady;
@@ -420,6 +446,7 @@ void LightSite::endPeriod() {
   Passed += Unseen.exchange(0, std::memory_order_relaxed);
   const uint64_t Count = Kept.Count + Passed;
   Before = Count - EarlierCount;
+  weigh();
   EarlierCount = Count;
   EarlierSamples = Kept.Count;
   IsBlind = false;
@@ -478,7 +505,7 @@ struct Waiting {
 
   /// What comes first is smaller.
   std::tuple<bool, bool, int64_t, uint32_t> urgency() const {
-    return {!IsOld, !IsNews, Since, Of->Of.Number};
+    return {!IsOld, !IsOld && !IsNews, Since, Of->Of.Number};
   }
 };
 } // namespace

@@ -40,7 +40,8 @@ bool FairMeter::takes(uint64_t Cap, int64_t Ns, Share &Of) {
       1'000'000'000 / std::min<uint64_t>(Cap, 1'000'000'000));
   int64_t Seen = FullAt.load(std::memory_order_relaxed), Next;
   do {
-    Next = std::max(Seen, Ns) + Each;
+    // A clock that was ahead for a moment must not keep all others waiting.
+    Next = std::clamp(Seen, Ns, Ns + Kept) + Each;
     if (Next - Ns > Kept - Spared)
       return false;
   } while (

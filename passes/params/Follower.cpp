@@ -160,6 +160,14 @@ static bool isComputedFurther(const Instruction &Merge) {
   return false;
 }
 
+/// True if \p Merge takes the smaller or larger of two values of which one is
+/// not configured.
+bool Follower::limitsMeasured(const Instruction &Merge) {
+  return any_of(limitedBy(Merge), [&](const Limited &L) {
+    return !Configuration.has(L.Compared);
+  });
+}
+
 /// True if \p Merge takes the smaller or larger of the followed value, for
 /// which \p IsOwn holds, and of a measured variable that it is then stored to,
 /// as in `x = std::min(x, limit)`: what that is compared with later is not
@@ -184,7 +192,9 @@ bool Follower::limitsVariable(const Instruction &Merge,
            });
   };
   return any_of(limitedBy(Merge), [&](const Limited &L) {
-    return !IsOwn(L.Side) && (IsVariable(L) || isComputedFurther(Merge)) &&
+    return !IsOwn(L.Side) &&
+           (IsVariable(L) ||
+            (!isOnlyCompared(Merge) && isComputedFurther(Merge))) &&
            !Configuration.has(L.Compared);
   });
 }
@@ -244,10 +254,11 @@ bool Follower::keepsFormula(const Stored &To) const {
          });
 }
 
-/// True if \p To is an element of an array or of a container.
+/// True if \p To is an element of an array or of a container, and no member of
+/// one.
 static bool isInArray(ArrayRef<ScalarPart> To) {
   return any_of(To, [](const ScalarPart &P) {
-    return !P.Where.isOne() || P.Where.isElement();
+    return P.Where.item().Number == Nth::Any || P.Where.isElement();
   });
 }
 
@@ -260,7 +271,7 @@ void Follower::store(const State &S, StoreInst &Store) {
       (isMeasured(S.How) && !keepsFormula(To)))
     return stopAt(ValueEnd::Mixed, &Store);
   // A measured value that a parameter limits, and that is changed further.
-  if (S.How.Merged && !IsOutcome && !Configuration.has(S.V) &&
+  if (S.How.Limiting && !IsOutcome && !Configuration.has(S.V) &&
       any_of(
           To.Written,
           [&](const ScalarPart &P) { return isMovedOn(P.Where, Accesses); }) &&
@@ -315,8 +326,8 @@ void Follower::load(const State &S, Instruction &Write,
       continue;
     }
     // A list of what was measured, some of it limited by a parameter.
-    if (S.How.Merged && !IsOutcome && (isInArray(Written) || isInArray(Read)) &&
-        !Configuration.has(S.V)) {
+    if (S.How.Limiting && !IsOutcome &&
+        (isInArray(Written) || isInArray(Read)) && !Configuration.has(S.V)) {
       stopAt(ValueEnd::Mixed, Load);
       continue;
     }
@@ -328,10 +339,8 @@ void Follower::load(const State &S, Instruction &Write,
           });
         }))
       continue;
-    Next.How.Merged |= Read.size() > 1 && !choiceOf(*Load) &&
-                       any_of(limitedBy(*Load), [&](const Limited &L) {
-                         return !Configuration.has(L.Compared);
-                       });
+    if (Read.size() > 1 && !choiceOf(*Load) && limitsMeasured(*Load))
+      Next.How.Merged = Next.How.Limiting = true;
     bool IsWide = any_of(Read, [](const ScalarPart &P) { return P.Size; });
     if (!WasWide && !IsWide) {
       Next.In = S.In;
@@ -409,6 +418,7 @@ bool Follower::carry(const State &S, Use &U) {
   if (isa<PHINode>(I) || (isa<SelectInst>(I) && U.getOperandNo() != 0)) {
     Transform How = S.How;
     How.Merged = true;
+    How.Limiting |= limitsMeasured(*I);
     push({I, How, S.Path, false, S.In, S.Origin ? S.Origin : S.V});
     return true;
   }

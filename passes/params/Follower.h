@@ -105,6 +105,7 @@ private:
   bool keepsFormula(const Stored &To) const;
   bool followHeld(const State &S, llvm::Instruction &I);
   bool isOneVariable(const llvm::Value *A, const llvm::Value *B) const;
+  bool limitsMeasured(const llvm::Instruction &Merge);
   bool limitsVariable(const llvm::Instruction &Merge,
                       llvm::function_ref<bool(const llvm::Value *)> IsOwn);
   bool limitsVariable(const llvm::StoreInst &Store);

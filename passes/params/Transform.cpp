@@ -61,6 +61,7 @@ void Transform::call(StringRef Op, std::optional<double> Constant, bool First) {
   Outer.Variables = Variables;
   Outer.Measured = Measured;
   Outer.Merged = Merged;
+  Outer.Limiting = Limiting;
   Outer.Part = Part;
   Outer.Inner = std::make_shared<const Application>(
       Application{Op.str(), std::move(*this), Constant, First});

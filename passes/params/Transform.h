@@ -38,6 +38,8 @@ struct Transform {
   unsigned Variables = 0; ///< operands that are not constant
   bool Measured = false;  ///< one of them is not known to be configured
   bool Merged = false; ///< x is one of several values that the program chooses
+  /// x is the smaller or larger of a value that is not configured and itself.
+  bool Limiting = false;
   /// What of a parameter that is a list or struct is taken: `element`, or what
   /// a row of `properties` calls it; empty for the value itself.
   std::string Part = "";
