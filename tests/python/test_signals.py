@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import subprocess
 
@@ -21,7 +20,7 @@ def test_a_signal_while_a_process_starts_ends_it():
 
     def start():
         started.append(program("sleep", "600")())
-        os.kill(os.getpid(), signal.SIGINT)
+        signal.raise_signal(signal.SIGINT)
         return started[0]
 
     with pytest.raises(KeyboardInterrupt), running(start, 60.0, 60.0):
