@@ -77,7 +77,7 @@ struct LightSite {
   void settle();
   /// Goes on to count in \p To, from nothing; the site is locked.
   void goOnIn(SiteWords &To);
-  uint64_t samples() const { return Kept.Count - EarlierSamples; }
+  uint64_t samples() const { return Kept.Count - Weighed.Count; }
   bool hasNews() const {
     return Kept.Flops || Turns || Whole.Unknown > 0 || ThresholdMoved ||
            Kept.Threshold != ToldThreshold;
@@ -115,9 +115,9 @@ struct LightSite {
   uint64_t Blind;        ///< those of them between which flops are not seen
   uint64_t Pairs, Turns; ///< successive evaluations seen while blind, and flops
   uint64_t Before = 0;   ///< evaluations in the previous period
-  /// Evaluations and samples that are kept from before the current period: the
-  /// last ones had no summary.
-  uint64_t EarlierCount, EarlierSamples;
+  /// Evaluations that are kept from before the current period: the last ones
+  /// had no summary.
+  uint64_t EarlierCount;
   /// What the sample says of all evaluations of the periods that ended and had
   /// one, Covered of them: each period is sampled as often as it needs, so each
   /// counts by its own share. Weighed is what was in the sample then.
@@ -165,7 +165,7 @@ void LightSite::clear() {
   Kept.DiffMax = Kept.High = Most = -HUGE_VAL;
   Kept.Site = Of.Number;
   ThresholdMoved = false;
-  Passed = Blind = Pairs = Turns = EarlierCount = EarlierSamples = 0;
+  Passed = Blind = Pairs = Turns = EarlierCount = 0;
   Whole = {};
   Weighed = Kept;
 }
@@ -448,7 +448,6 @@ void LightSite::endPeriod() {
   Before = Count - EarlierCount;
   weigh();
   EarlierCount = Count;
-  EarlierSamples = Kept.Count;
   IsBlind = false;
   if (!Before)
     return;
