@@ -262,6 +262,15 @@ static bool isInArray(ArrayRef<ScalarPart> To) {
   });
 }
 
+/// How a value ends that no load is known to read, written to \p Written.
+ValueEnd::KindTy Follower::endWithoutLoad(ArrayRef<ScalarPart> Written) {
+  return any_of(
+             Written,
+             [&](const ScalarPart &P) { return Accesses.isCopiedOn(P.Where); })
+             ? ValueEnd::ManyTargets
+             : ValueEnd::Unread;
+}
+
 /// The value goes on to the loads of the variable that it is stored to.
 void Follower::store(const State &S, StoreInst &Store) {
   if (limitsVariable(Store))
@@ -282,13 +291,7 @@ void Follower::store(const State &S, StoreInst &Store) {
   else if (To.Targets > MaxTargets)
     stopAt(ValueEnd::ManyTargets, &Store);
   else if (To.Loads.empty() && !IsOutcome)
-    stopAt(any_of(To.Written,
-                  [&](const ScalarPart &P) {
-                    return Accesses.isCopiedOn(P.Where);
-                  })
-               ? ValueEnd::ManyTargets
-               : ValueEnd::Unread,
-           &Store);
+    stopAt(endWithoutLoad(To.Written), &Store);
   if (To.Loads.empty() && !S.In)
     return;
   State Next{S.V, S.How, nullptr, false, S.In};

@@ -103,6 +103,7 @@ private:
   llvm::SmallVector<Decision, 2> followOutcome(llvm::Value *Outcome,
                                                const CallPath *Path);
   bool keepsFormula(const Stored &To) const;
+  ValueEnd::KindTy endWithoutLoad(llvm::ArrayRef<ScalarPart> Written);
   bool followHeld(const State &S, llvm::Instruction &I);
   bool isOneVariable(const llvm::Value *A, const llvm::Value *B) const;
   bool limitsMeasured(const llvm::Instruction &Merge);

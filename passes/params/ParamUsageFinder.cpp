@@ -474,17 +474,13 @@ void Follower::followRead(unsigned N) {
     push({R.Call, {}, nullptr, true});
   if (R.Target) {
     SmallVector<LoadInst *, 8> Loads = Writes.usesOf(*R.Call, R.Target);
-    Locations To = Pointers.resolve(R.Target, true);
-    if (Loads.empty())
-      stopAt(To.empty() ? ValueEnd::UnknownPointer
-             : any_of(To,
-                      [&](const Location &L) { return Accesses.isCopiedOn(L); })
-                 ? ValueEnd::ManyTargets
-                 : ValueEnd::Unread,
-             R.Call);
     SmallVector<ScalarPart, 1> Written;
-    for (Location &L : To)
+    for (Location &L : Pointers.resolve(R.Target, true))
       Written.push_back({std::move(L)});
+    if (Loads.empty())
+      stopAt(Written.empty() ? ValueEnd::UnknownPointer
+                             : endWithoutLoad(Written),
+             R.Call);
     load({R.Call, {}, nullptr, true}, *R.Call, Written, Loads);
   }
   followAll(N);
