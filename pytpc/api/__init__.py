@@ -10,6 +10,7 @@ tables, and are tables in a notebook (with all texts from the robot escaped).
 ``rank``, ``curves``       the thesis's ranking at each mark, or over time
 ``suggest``                which value to try
 ``what_if``                what a value would have changed (a replay)
+``margins``                how near each comparison came to turning
 ``write_report``           a page with the answers and the evidence
 ``build``, ``analyse``,    static information
 ``collect``
@@ -31,6 +32,7 @@ from importlib import import_module
 _PLACES = {
     "missions": ("convert", "load_static", "read"),
     "diagnosing": ("Rankings", "curves", "diagnose", "rank"),
+    "measuring": ("margins",),
     "suggesting": ("suggest", "what_if"),
     "report": ("write_report",),
     "building": ("BuildOptions", "analyse", "build", "collect"),

@@ -42,6 +42,7 @@ _GROUPED = {
         "suggest": ("suggest_commands", "Suggest a value to try, and show what it would change."),
         "report": ("report_commands", "Write a page with the suspects at each mark, and why."),
         "fix": ("fix_commands", "Try values in turn until the robot is right, or none is left."),
+        "margins": ("margins_commands", "Show how near each comparison came to turning."),
         "diff": ("diff_commands", "Show what differs between a good recording and a bad one."),
         "origin": ("value_commands", "Show where the values of parameters came from."),
         "apply": ("value_commands", "Change a value in the file that set it, or on the robot."),

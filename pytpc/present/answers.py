@@ -200,6 +200,7 @@ class Diagnosed(Diagnosis):
         if self.shown:
             tables.append(self.table())
         before += [self.blame.title, self.headline, *self.blame.notes]
+        after += [one.sentence for one in self.groups]
         return before, tables, [*after, *([self.folded_text] if self.folded_text else [])]
 
     def __str__(self) -> str:

@@ -21,6 +21,7 @@ from pytpc.diagnosis.results.diagnosis import Diagnosis
 from pytpc.diagnosis.results.differences import Difference, RunDifferences, SetValue
 from pytpc.diagnosis.results.live import LiveRow, Look
 from pytpc.diagnosis.results.suspects import Accused, MarkRanking, Suspect, Uncompared
+from pytpc.diagnosis.results.turn_groups import SuspectGroup, TurnGroup
 from pytpc.present.watch_screen import Status
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark
@@ -157,7 +158,25 @@ def diagnosis_json(found: Diagnosis) -> Json:
         "parameters": blame.parameters,
         "notes": list(blame.notes),
         "suspects": [_blamed(one) for one in found.advice],
+        "groups": [_suspect_group(one) for one in blame.groups],
         "differences": None if found.differences is None else differences_json(found.differences),
+    }
+
+
+def _suspect_group(found: SuspectGroup) -> Json:
+    return {
+        "parameters": list(found.parameters),
+        "probability": found.probability,
+        **turn_group_json(found.turning),
+    }
+
+
+def turn_group_json(found: TurnGroup) -> Json:
+    """Comparisons that turn as one."""
+    return {
+        "kind": found.kind,
+        "turns": found.turns,
+        "members": [asdict(one) for one in found.members],
     }
 
 

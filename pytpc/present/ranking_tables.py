@@ -88,8 +88,13 @@ def print_diagnosis(console: Console, found: Diagnosis) -> None:
     parts: list[RenderableType] = [Text(blame.title, style="bold"), _verdict(found)]
     parts += [_indented(Text(plain(note), style="yellow")) for note in blame.notes]
     if found.shown:
-        rows = [_blamed_cells(one) for one in found.shown]
+        rows = [
+            _blamed_cells(one, with_first=place > 0)
+            for group in found.by_group
+            for place, one in enumerate(group)
+        ]
         parts.append(_indented(_listing(console, _BLAMED, rows)))
+    parts += [_indented(Text(plain(one.sentence))) for one in found.groups]
     parts += [_indented(line) for one in found.shown for line in _followed(one)]
     if found.folded_text:
         parts.append(_indented(Text(found.folded_text, style="dim")))
@@ -150,11 +155,13 @@ def _difference_cells(one: Difference, *, each: bool) -> list[Text]:
     ]
 
 
-def _blamed_cells(one: BlamedAdvice) -> list[Text]:
+def _blamed_cells(one: BlamedAdvice, *, with_first: bool) -> list[Text]:
+    """The cells of a suspect; ``with_first``: it is shown below another one of its group."""
     accused, tried = one.accused, one.remedy
+    name = plain(accused.parameter)
     return [
         Text(f"{accused.position}=" if accused.tied else str(accused.position)),
-        Text(plain(accused.parameter), style="bold" if accused.position == 1 else ""),
+        Text(f"with {name}" if with_first else name, style="bold" if accused.position == 1 else ""),
         Text(percent(accused.probability)),
         Text("" if accused.type is None else _KINDS[accused.type]),
         Text(one.current),
@@ -242,6 +249,8 @@ def print_suggestions(console: Console, found: Diagnosis, parameter: str | None)
         parts.append(_verdict(found))
         parts += [_indented(Text(plain(note), style="yellow")) for note in found.blame.notes]
     parts += [_indented(_suggested(found, one)) for one in shown]
+    if parameter is None:
+        parts += [_indented(Text(plain(one.sentence))) for one in found.groups]
     if parameter is None and found.folded_text:
         parts.append(_indented(Text(found.folded_text, style="dim")))
     console.print(Padding(Group(*parts), (0, 0, 1, 0), expand=False), highlight=False)

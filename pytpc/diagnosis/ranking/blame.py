@@ -14,6 +14,7 @@ from itertools import groupby
 
 from pytpc.base.wording import many
 from pytpc.diagnosis.question import PLAIN, Question
+from pytpc.diagnosis.ranking.grouped import suspect_groups
 from pytpc.diagnosis.ranking.mark_ranking import outside
 from pytpc.diagnosis.ranking.other_nodes import OtherNodes
 from pytpc.diagnosis.ranking.other_values import diagnose_beside, unheard
@@ -30,6 +31,7 @@ from pytpc.diagnosis.results.suspects import (
 )
 from pytpc.diagnosis.scores.evaluations import KeyRows, LoggedEvaluations
 from pytpc.diagnosis.scores.score_tables import Tpcs
+from pytpc.diagnosis.turn_groups import groups_in
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
@@ -78,7 +80,9 @@ def blame(recording: Recording, static_info: StaticInfo, question: Question = PL
     no_word = {found.names[column] for column in unheard(recording, streams)}
     suspects = _in_order(by_size((*compared, *silent), differences, no_word))
     code = None if differences is None else differences.code
-    made = Blame(suspects, left * found.none, len(tpcs.names), recording.marks, notes, code)
+    groups = suspect_groups(suspects, groups_in(streams, tpcs))
+    none = left * found.none
+    made = Blame(suspects, none, len(tpcs.names), recording.marks, notes, code, groups)
     if len(recording.marks) > 1 or made.accused is not None:
         return made
     return replace(

@@ -12,6 +12,7 @@ from pytpc.base.wording import listed, many, percent
 from pytpc.diagnosis.results.advice import BlamedAdvice
 from pytpc.diagnosis.results.differences import Difference, RunDifferences
 from pytpc.diagnosis.results.suspects import WORTH, Blame, Suspected
+from pytpc.diagnosis.results.turn_groups import SuspectGroup, group_of
 
 _NAMED = 3
 
@@ -66,6 +67,22 @@ class Diagnosis:
         if likely or (self.differences is not None and self.is_none_likeliest):
             return likely
         return self.advice[:1]
+
+    @cached_property
+    def groups(self) -> tuple[SuspectGroup, ...]:
+        """The groups of which at least two members are listed."""
+        names = {one.accused.parameter for one in self.shown}
+        return tuple(one for one in self.blame.groups if len(names & {*one.parameters}) > 1)
+
+    @cached_property
+    def by_group(self) -> tuple[tuple[BlamedAdvice, ...], ...]:
+        """What is listed: each suspect with those that turn as one with it, the likeliest first."""
+        found: dict[str, list[BlamedAdvice]] = {}
+        for one in self.shown:
+            group = group_of(self.groups, one.accused.parameter)
+            first = one.accused.parameter if group is None else group.parameters[0]
+            found.setdefault(first, []).append(one)
+        return tuple(map(tuple, found.values()))
 
     @property
     def folded(self) -> tuple[Suspected, ...]:

@@ -11,8 +11,9 @@ from collections.abc import Collection
 from dataclasses import dataclass, replace
 from typing import NamedTuple, TypeAlias, TypeVar
 
-from pytpc.base.wording import percent
+from pytpc.base.wording import listed, percent
 from pytpc.diagnosis.results.differences import CodeComparison, Difference
+from pytpc.diagnosis.results.turn_groups import NAMED, SuspectGroup, group_of
 from pytpc.recording.marks import Mark, MarkType
 from pytpc.static.link_unit import Comparison
 from pytpc.static.parameters import ByParameter, same_parameter
@@ -211,7 +212,8 @@ class Blame:
     They are all compared parameters, and what differs from good runs and no comparison reports.
     ``none`` is the probability that it is none of them; ``parameters`` counts those that are
     compared anywhere in the code. ``notes`` say what keeps the judgement from being surer. ``code``
-    compares the code with that of the good runs; None if it is not known.
+    compares the code with that of the good runs; None if it is not known. ``groups`` are the
+    suspects that turn as one.
     """
 
     suspects: tuple[Suspected, ...]
@@ -220,6 +222,7 @@ class Blame:
     marks: tuple[Mark, ...]
     notes: tuple[str, ...]
     code: CodeComparison | None = None
+    groups: tuple[SuspectGroup, ...] = ()
 
     @property
     def confidence(self) -> float:
@@ -244,6 +247,13 @@ class Blame:
         name, sure = first.parameter, percent(first.probability)
         if self.accused is not None:
             return f"blame {name}: {sure}; none of the parameters: {percent(self.none)}"
+        group = group_of(self.groups, name)
+        if group is not None and group.probability >= SURE:
+            members = listed(group.parameters, NAMED)
+            return (
+                f"blame one of {members}: {percent(group.probability)}, as they"
+                f" {group.turning.text}; none of the parameters: {percent(self.none)}"
+            )
         if self.none > first.probability:
             return (
                 f"not sure: most likely none of the parameters ({percent(self.none)};"

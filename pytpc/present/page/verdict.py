@@ -47,7 +47,7 @@ class VerdictView:
     The action is in two parts, what to do and ``why``. ``title`` says which marks were judged.
     ``suspects`` are those behind the accused one, or all if it is not ``sure``: then each may be
     the cause, and none is set above the others. ``folded`` counts those that are not listed.
-    ``notes`` say what limits the verdict.
+    ``groups`` name those that turn as one. ``notes`` say what limits the verdict.
     """
 
     title: str
@@ -58,6 +58,7 @@ class VerdictView:
     direction: str
     suspects: list[SuspectLink]
     folded: str
+    groups: list[str]
     notes: list[str]
 
 
@@ -135,6 +136,7 @@ def verdict_view(
             for one in (found.next_suspects if sure else found.shown)
         ],
         folded=found.folded_text,
+        groups=[one.sentence for one in found.groups],
         notes=list(found.blame.notes),
     )
 

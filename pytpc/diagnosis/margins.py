@@ -1,0 +1,213 @@
+"""How each comparison behaves over a mission and over missions: margins, near misses, drift.
+
+All of it is about one comparison in one node. Shares and quantiles are of time: each evaluation
+counts for as long as it was the last word (`ResultStream.weight`). Summaries are taken as
+`with_summarised` does: their extremes are exact, how long a value was at which distance is not.
+
+Near is a margin of up to ``NEAR`` of the range of all values and thresholds. A near miss is a time
+in which it is near and that begins and ends on the same side; it ends when the margin is above
+twice that, so that noise counts once. The drift is the trend of the median margin of ``PARTS``
+equal parts of the time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from pytpc.base.columns import Bools, Floats, Int64s
+from pytpc.diagnosis.ranking.result_streams import ResultStream, ResultStreams
+from pytpc.diagnosis.ranking.summarised import with_summarised
+from pytpc.diagnosis.results.margins import Behaviour, Distribution, Drift, OverMissions
+from pytpc.diagnosis.scores.score_tables import Tpcs
+from pytpc.diagnosis.scores.summary_scores import covered
+from pytpc.diagnosis.thresholds.units import added_by, is_text
+from pytpc.diagnosis.trend import trend_of
+from pytpc.recording.events import Events
+from pytpc.recording.mission import Recording
+from pytpc.recording.summaries import Summaries
+from pytpc.static.link_unit import Comparison
+from pytpc.static.parameters import base_key
+from pytpc.static.static_info import StaticInfo
+
+NEAR = 0.05
+"""The part of the range that is near to the threshold."""
+
+PARTS = 10
+"""The drift is that of the medians of so many parts of the time."""
+
+FEWEST, SHORTEST_S = 30, 30.0
+"""What was evaluated less often, or for a shorter time, has no drift: all that moves would."""
+
+_QUANTILES = (0.05, 0.5, 0.95)
+
+
+def behaviours(recording: Recording, static_info: StaticInfo) -> tuple[Behaviour, ...]:
+    """What each comparison did in each node, by parameter, key and node.
+
+    Args:
+        recording: the mission; marks are not needed.
+        static_info: what the analysis found, with the names of this mission.
+    """
+    tpcs = Tpcs.of(static_info)
+    streams = ResultStreams.of(with_summarised(recording), tpcs)
+    found = [_behaviour(one, tpcs, static_info, recording) for one in streams.streams]
+    return tuple(sorted(found, key=_order))
+
+
+def over_missions(missions: Sequence[Sequence[Behaviour]]) -> tuple[OverMissions, ...]:
+    """The comparisons of several missions, in their order.
+
+    A comparison of a node is the same in all of them if its key is, and the node or the parameter's
+    name.
+    """
+    places: dict[tuple[str, str, str], list[Behaviour | None]] = {}
+    for number, mission in enumerate(missions):
+        for one in mission:
+            row = places.setdefault((base_key(one.key), one.node, one.parameter), [])
+            row += [None] * (number + 1 - len(row))
+            row[number] = one
+    made = []
+    for row in places.values():
+        row += [None] * (len(missions) - len(row))
+        made.append(_over(tuple(row)))
+    return tuple(sorted(made, key=lambda one: (one.parameter, one.key, one.node)))
+
+
+def _over(row: tuple[Behaviour | None, ...]) -> OverMissions:
+    seen = [(place, one) for place, one in enumerate(row) if one is not None]
+    known = [(place, one.margins.median) for place, one in seen if one.margins is not None]
+    places, medians = np.array(known, np.float64).reshape(-1, 2).T
+    found = trend_of(places, medians)
+    step = found.slope if found is not None and found.is_clear else None
+    last = seen[-1][1]
+    zero_in = float(-medians[-1] / step) if step is not None and step < 0 else None
+    return OverMissions(last.key, last.node, last.parameter, last.comparison, row, step, zero_in)
+
+
+def _order(one: Behaviour) -> tuple[str, str, str]:
+    return one.parameter, one.key, one.node
+
+
+def _counted(recording: Recording, key: str, node: str) -> tuple[int, int]:
+    """How many evaluations there were of a comparison in a node, and how many turns.
+
+    Summaries count the evaluations that are in the events as well, and turns beyond a cap.
+    """
+    events, summaries = recording.events, recording.summaries
+    rows, own = _rows(events, key, node), _rows(summaries, key, node)
+    turned = int(events.flop[rows].sum())
+    if not own.size:
+        return rows.size, turned
+    alone = rows[~covered(events, rows, summaries, own)]
+    in_both = int(summaries.flops[own].sum()) + int(events.flop[alone].sum())
+    return int(summaries.count[own].sum()) + alone.size, max(turned, in_both)
+
+
+def _rows(table: Events | Summaries, key: str, node: str) -> Int64s:
+    if node not in table.nodes:
+        return np.zeros(0, np.int64)
+    rows = table.rows_of(key)
+    return rows[table.node[rows] == table.nodes.index(node)]
+
+
+def _behaviour(
+    stream: ResultStream, tpcs: Tpcs, static_info: StaticInfo, recording: Recording
+) -> Behaviour:
+    key = tpcs.keys[stream.code]
+    evaluations, turns = _counted(recording, key, stream.node)
+    comparison = static_info.comparisons[key]
+    seconds = float(stream.weight.sum())
+    scale = _scale(comparison)
+    measured = _measured(stream, comparison, static_info)
+    margin = stream.margin / (scale or 1.0)
+    reach = stream.spread / (scale or 1.0)
+    near = margin <= NEAR * reach
+    return Behaviour(
+        key=key,
+        node=stream.node,
+        parameter=tpcs.parameters[stream.code],
+        comparison=comparison,
+        evaluations=evaluations,
+        seconds=seconds,
+        margins=_distribution(margin, stream.weight) if measured else None,
+        unit="value" if scale is None else "parameter",
+        reach=reach,
+        true_share=_share(stream.res, stream.weight),
+        turns=turns,
+        near_misses=_near_misses(margin, stream.res, NEAR * reach) if measured else 0,
+        undecided=_share(near, stream.weight) if measured else None,
+        drift=_drift(stream, margin) if measured else None,
+    )
+
+
+def _measured(stream: ResultStream, comparison: Comparison, static_info: StaticInfo) -> bool:
+    """Whether the values say how near it was: not of flags, text, and what has one value only."""
+    if comparison.relation == "flag" or stream.spread <= 0 or np.isnan(stream.margin).all():
+        return False
+    return not is_text(comparison, static_info.unit_of(base_key(comparison.key)))
+
+
+def _scale(comparison: Comparison) -> float | None:
+    """How much the threshold moves with the parameter; None if other numbers decide that."""
+    transform = comparison.transform
+    if transform is None:
+        return 1.0
+    if transform.kind == "affine" and transform.scale:
+        return abs(transform.scale)
+    added = added_by(comparison)
+    return None if added is None else abs(added)
+
+
+def _share(which: Bools, weight: Floats) -> float:
+    """The share of the time; of the evaluations if all were at one time."""
+    total = float(weight.sum())
+    if total <= 0:
+        return float(which.mean())
+    return float(weight[which].sum()) / total
+
+
+def _distribution(margin: Floats, weight: Floats) -> Distribution:
+    known = np.isfinite(margin)
+    margin, weight = margin[known], weight[known]
+    order = np.argsort(margin, kind="stable")
+    below = np.cumsum(weight[order])
+    if below[-1] <= 0:
+        below = np.arange(1, margin.size + 1, dtype=np.float64)
+    places = np.searchsorted(below, np.array(_QUANTILES) * below[-1], side="left")
+    low, median, high = margin[order][places].tolist()
+    return Distribution(float(margin[order][0]), low, median, high)
+
+
+def _near_misses(margin: Floats, res: Bools, near: float) -> int:
+    """How often the margin was near without a turn; see the module's docstring."""
+    found, inside, turned = 0, False, False
+    # Between two evaluations that a turn lies between, nothing was missed.
+    changes = np.diff(res, prepend=res[0])
+    for value, change in zip(margin.tolist(), changes.tolist(), strict=True):
+        if change and inside:
+            turned = True
+        if not inside and value <= near:
+            inside, turned = True, bool(change)
+        elif inside and not value <= 2 * near:
+            found += not turned
+            inside = False
+    return found + (inside and not turned)
+
+
+def _drift(stream: ResultStream, margin: Floats) -> Drift | None:
+    known = np.isfinite(margin)
+    # Pauses do not count: what happened in them is not known.
+    clock = np.cumsum(stream.weight) - stream.weight
+    clock, margin = clock[known], margin[known]
+    if clock.size < FEWEST or clock[-1] < SHORTEST_S:
+        return None
+    parts = np.minimum((PARTS * clock / clock[-1]).astype(np.int64), PARTS - 1)
+    split = [(clock[parts == part], margin[parts == part]) for part in np.unique(parts)]
+    times, medians = np.array([[np.median(one) for one in both] for both in split]).T
+    found = trend_of(times, medians)
+    if found is None or not found.is_clear:
+        return None
+    left = float(medians[-1]) / -found.slope if found.slope < 0 else None
+    return Drift(60.0 * found.slope, left)

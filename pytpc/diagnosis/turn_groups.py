@@ -1,0 +1,178 @@
+"""Which comparisons turn together, or in a fixed order: from when they turned, they are one.
+
+Two comparisons belong together if nearly each turn of either has one of the other at the same
+distance in time, and chance would not do that. The distance is the median of those from each turn
+of the one to the nearest of the other. If turns came at any time, each turn of the first would meet
+one of the second by chance with the probability
+
+    p = min(1, 2 w n / T)
+
+where w is how far a distance may be from the median, n the number of the second's turns and T the
+length of the log. All n turns meet with a probability of at most the binomial tail P(X >= k). That
+must be below ``CHANCE``, divided by the number of pairs that are compared (Bonferroni). For
+distances other than zero, the median could have been anything up to ``ORDER_S``, which multiplies
+the tail. The groups are the connected components.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import exp, lgamma, log
+
+import numpy as np
+
+from pytpc.base.columns import Floats
+from pytpc.diagnosis.ranking.result_streams import CASCADE_S, ResultStreams
+from pytpc.diagnosis.results.turn_groups import GroupMember, TurnGroup
+from pytpc.diagnosis.scores.score_tables import Tpcs
+
+TOGETHER_S = 0.15
+"""Turns this near to each other have no order: a loop at 10 Hz, or a message to another node, lies
+between them."""
+
+ORDER_S = CASCADE_S
+"""Turns that follow each other later than this are not one's consequence of the other."""
+
+SPREAD = 0.25
+"""A distance may be from the median by this part of it, and by ``TOGETHER_S`` in any case."""
+
+AGREED = 0.9
+"""So large a part of the turns of either must have one of the other."""
+
+LEAST = 2
+"""Who turned once turned at the same time as everything that began then."""
+
+MOST = 2000
+"""Of who turned more often, the first so many turns are compared."""
+
+CHANCE = 0.01
+"""How likely it may be that a log without any group seems to have one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Turns:
+    """When a comparison turned in a node: ``times`` float64[n], sorted, in s."""
+
+    key: str
+    node: str
+    parameter: str
+    times: Floats
+
+
+def groups_in(streams: ResultStreams, tpcs: Tpcs) -> tuple[TurnGroup, ...]:
+    """The groups of a recording; noise at a threshold counts as one turn."""
+    turns = [
+        Turns(tpcs.keys[one.code], one.node, tpcs.parameters[one.code], one.changes)
+        for one in streams.streams
+    ]
+    return turn_groups(turns, streams.seconds)
+
+
+def turn_groups(every: Sequence[Turns], seconds: float) -> tuple[TurnGroup, ...]:
+    """The groups of comparisons that turn as one, those that turned most often first.
+
+    Args:
+        every: the comparisons.
+        seconds: how long they were watched.
+    """
+    turned = sorted(
+        (one for one in every if one.times.size >= LEAST),
+        key=lambda one: (one.times.size, one.parameter, one.key, one.node),
+    )
+    pairs = list(_alike(turned))
+    limit = CHANCE / max(1, len(pairs))
+    parent = list(range(len(turned)))
+    for a, b in pairs:
+        if _root(parent, a) != _root(parent, b) and _belong(turned[a], turned[b], seconds, limit):
+            parent[_root(parent, b)] = _root(parent, a)
+    found: dict[int, list[Turns]] = {}
+    for place, one in enumerate(turned):
+        found.setdefault(_root(parent, place), []).append(one)
+    groups = [_group(members) for members in found.values() if len(members) > 1]
+    return tuple(sorted(groups, key=lambda one: (-one.turns, one.parameters)))
+
+
+def _alike(turned: Sequence[Turns]) -> Iterator[tuple[int, int]]:
+    """The pairs whose numbers of turns are near enough; they are sorted by these numbers."""
+    for a, first in enumerate(turned):
+        for b in range(a + 1, len(turned)):
+            if first.times.size < AGREED * turned[b].times.size:
+                break
+            yield a, b
+
+
+def _root(parent: list[int], place: int) -> int:
+    while parent[place] != place:
+        parent[place] = place = parent[parent[place]]
+    return place
+
+
+def _belong(first: Turns, second: Turns, seconds: float, limit: float) -> bool:
+    a, b = first.times[:MOST], second.times[:MOST]
+    median, joined = _joined(a, b)
+    most = max(a.size, b.size)
+    if abs(median) > ORDER_S or joined < AGREED * most:
+        return False
+    width = _width(median)
+    free = 1.0 if abs(median) <= TOGETHER_S else ORDER_S / width
+    # Two that turn nearly all the time always meet.
+    hit = min(1.0, 2.0 * width * b.size / max(seconds, width))
+    return free * _tail(joined, a.size, hit) <= limit
+
+
+def _joined(a: Floats, b: Floats) -> tuple[float, int]:
+    """The median distance from turns of ``a`` to the nearest of ``b``, and how many have it.
+
+    Each turn of ``b`` counts once.
+    """
+    nearest = _nearest(a, b)
+    median = float(np.median(b[nearest] - a))
+    met = _nearest(a + median, b)
+    near = np.abs(b[met] - a - median) <= _width(median)
+    return median, int(np.unique(met[near]).size)
+
+
+def _nearest(times: Floats, among: Floats) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
+    """intp[times]: the place of the nearest among the sorted others."""
+    after = np.clip(np.searchsorted(among, times), 1, among.size - 1)
+    before = after - 1
+    return np.where(times - among[before] <= among[after] - times, before, after)
+
+
+def _width(median: float) -> float:
+    return max(TOGETHER_S, SPREAD * abs(median))
+
+
+def _tail(least: int, of: int, chance: float) -> float:
+    """P(X >= least) of a binomial distribution; logarithms keep large numbers in range."""
+    if chance >= 1.0:
+        return 1.0
+    if chance <= 0.0:
+        return 0.0
+    up, down = log(chance), log(1.0 - chance)
+    terms = (
+        exp(min(0.0, _log_comb(of, k) + k * up + (of - k) * down)) for k in range(least, of + 1)
+    )
+    return min(1.0, sum(terms))
+
+
+def _log_comb(of: int, k: int) -> float:
+    return lgamma(of + 1) - lgamma(k + 1) - lgamma(of - k + 1)
+
+
+def _group(members: Sequence[Turns]) -> TurnGroup:
+    """The members in the order in which they turn, seen from one of them."""
+    seen_from = members[0].times[:MOST]
+    ordered = sorted(
+        ((_joined(seen_from, one.times[:MOST]), one) for one in members),
+        key=lambda each: (each[0][0], each[1].parameter, each[1].key, each[1].node),
+    )
+    begin = ordered[0][0][0]
+    made = tuple(
+        GroupMember(one.key, one.node, one.parameter, after - begin, one.times.size, joined)
+        for (after, joined), one in ordered
+    )
+    gaps = [later.after_s - earlier.after_s for earlier, later in pairwise(made)]
+    return TurnGroup("in order" if max(gaps) > TOGETHER_S else "together", made)

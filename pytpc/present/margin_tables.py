@@ -1,0 +1,163 @@
+"""How near comparisons came to turning, as tables and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+
+from rich.console import Console, Group, RenderableType
+from rich.padding import Padding
+from rich.text import Text
+
+from pytpc.base.wording import many, percent, plain
+from pytpc.diagnosis.results.margins import Behaviour, OverMissions
+from pytpc.diagnosis.results.turn_groups import TurnGroup
+from pytpc.present.as_json import Json, finite
+from pytpc.present.listing import Heading, Listing
+
+_PARAMETER = Heading("Parameter", in_line=True)
+_BEHAVIOUR = (
+    _PARAMETER,
+    Heading("Nearest", right=True, in_line=True),
+    Heading("Margin", right=True),
+    Heading("5 to 95 %", right=True),
+    Heading("True", right=True),
+    Heading("Turns", right=True),
+    Heading("Misses", right=True),
+    Heading("Undecided", right=True),
+    Heading("Drift"),
+    Heading("Compared at"),
+)
+_TERMS = (
+    "Nearest: the smallest margin, as a part of the range of all values and thresholds. Margin: the"
+    " median of |value - threshold| over time. Misses: how often it came near, below 5 %, and left"
+    " without turning. Undecided: the share of time in which it was near."
+)
+_OVER = "Margin: the median of each mission. Trend: the change from one mission to the next."
+
+
+def print_behaviours(
+    console: Console, title: str, rows: Sequence[Behaviour], groups: Sequence[TurnGroup], rest: int
+) -> None:
+    """Print what the comparisons of a mission did; ``rest`` counts those that are left out."""
+    parts: list[RenderableType] = [Text(plain(title), style="bold")]
+    if rows:
+        cells = [_cells(one) for one in rows]
+        parts.append(_indented(Listing(_BEHAVIOUR, cells, one_line=not console.is_terminal)))
+    if rest:
+        parts.append(_indented(Text(f"and {rest:,} more: --top shows more", style="dim")))
+    parts += [_indented(Text(plain(group_text(one)))) for one in groups]
+    if rows:
+        parts.append(_indented(Text(_TERMS, style="dim")))
+    console.print(Padding(Group(*parts), (0, 0, 1, 0), expand=False), highlight=False)
+
+
+def print_over_missions(
+    console: Console, names: Sequence[str], rows: Sequence[OverMissions], rest: int
+) -> None:
+    """Print the median margins of each comparison over missions."""
+    headings = (
+        _PARAMETER,
+        *(Heading(plain(name), right=True) for name in names),
+        Heading("Trend"),
+        Heading("Compared at"),
+    )
+    cells = [
+        [
+            Text(plain(one.parameter)),
+            *(Text(_median(each)) for each in one.behaviours),
+            Text(_trend(one), style="bold" if one.zero_in is not None else ""),
+            Text(plain(one.place)),
+        ]
+        for one in rows
+    ]
+    parts: list[RenderableType] = [Text(f"{many(len(names), 'mission')}", style="bold")]
+    parts.append(_indented(Listing(headings, cells, one_line=not console.is_terminal)))
+    if rest:
+        parts.append(_indented(Text(f"and {rest:,} more: --top shows more", style="dim")))
+    parts.append(_indented(Text(_OVER, style="dim")))
+    console.print(Padding(Group(*parts), (0, 0, 1, 0), expand=False), highlight=False)
+
+
+def group_text(group: TurnGroup) -> str:
+    """The members of a group, each with how long after the first it turned."""
+    names = [
+        one.parameter + (f" ({one.after_s:.1f} s later)" if group.kind == "in order" and n else "")
+        for n, one in enumerate(group.members)
+    ]
+    return f"One group: {', '.join(names)} {group.text}"
+
+
+def _indented(part: RenderableType) -> RenderableType:
+    return Padding(part, (0, 0, 0, 2), expand=False)
+
+
+def _cells(one: Behaviour) -> list[Text]:
+    found = one.margins
+    near = one.nearest is not None and one.nearest <= 0.05
+    return [
+        Text(plain(one.parameter)),
+        Text("" if one.nearest is None else percent(one.nearest), style="bold" if near else ""),
+        Text("" if found is None else _short(found.median)),
+        Text("" if found is None else f"{_short(found.low)} to {_short(found.high)}"),
+        Text(percent(one.true_share)),
+        Text(f"{one.turns:,}"),
+        Text("" if found is None else f"{one.near_misses:,}"),
+        Text("" if one.undecided is None else percent(one.undecided)),
+        Text(one.drift_text),
+        Text(plain(one.place)),
+    ]
+
+
+def _short(value: float) -> str:
+    return f"{value:.3g}"
+
+
+def _median(one: Behaviour | None) -> str:
+    return "" if one is None or one.margins is None else _short(one.margins.median)
+
+
+def _trend(one: OverMissions) -> str:
+    if one.trend is None:
+        return ""
+    left = "" if one.zero_in is None else f": 0 in {one.zero_in:.0f} missions"
+    return f"{_short(one.trend)} a mission{left}"
+
+
+def behaviour_json(one: Behaviour) -> Json:
+    """A comparison of a mission."""
+    return {
+        "parameter": one.parameter,
+        "node": one.node,
+        "key": one.key,
+        "file": one.comparison.file,
+        "lineno": one.comparison.lineno,
+        "source_code": one.comparison.source_code,
+        "evaluations": one.evaluations,
+        "seconds": one.seconds,
+        "margins": None if one.margins is None else one.margins._asdict(),
+        "unit": one.unit,
+        "range": finite(one.reach),
+        "nearest": one.nearest,
+        "true_share": one.true_share,
+        "turns": one.turns,
+        "turns_per_minute": one.turns_per_minute,
+        "near_misses": one.near_misses,
+        "undecided": one.undecided,
+        "drift": None if one.drift is None else asdict(one.drift),
+    }
+
+
+def over_json(one: OverMissions) -> Json:
+    """A comparison over missions."""
+    return {
+        "parameter": one.parameter,
+        "node": one.node,
+        "key": one.key,
+        "medians": [
+            None if each is None or each.margins is None else each.margins.median
+            for each in one.behaviours
+        ],
+        "trend": one.trend,
+        "zero_in": one.zero_in,
+    }
