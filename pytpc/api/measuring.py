@@ -12,12 +12,9 @@ from typing import cast
 from pytpc.api.missions import Source, load_static, read_named, with_names_of
 from pytpc.base.wording import percent
 from pytpc.diagnosis.margins import behaviours, over_missions
-from pytpc.diagnosis.ranking.result_streams import ResultStreams
-from pytpc.diagnosis.ranking.summarised import with_summarised
 from pytpc.diagnosis.results.margins import Behaviour, OverMissions
 from pytpc.diagnosis.results.turn_groups import TurnGroup
-from pytpc.diagnosis.scores.score_tables import Tpcs
-from pytpc.diagnosis.turn_groups import groups_in
+from pytpc.diagnosis.turn_groups import groups_of
 from pytpc.present.answers import NotebookTable, TableSequence
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
@@ -40,10 +37,8 @@ class MissionMargins(TableSequence[Behaviour]):
     ) -> MissionMargins:
         """Those of a recording that was read before."""
         named = with_names_of(recording, static_info, source)
-        tpcs = Tpcs.of(named)
-        streams = ResultStreams.of(with_summarised(recording), tpcs)
         found = behaviours(recording, named)
-        return cls(recording.name, recording.seconds, found, groups_in(streams, tpcs))
+        return cls(recording.name, recording.seconds, found, groups_of(recording, named))
 
     @property
     def items(self) -> tuple[Behaviour, ...]:

@@ -17,6 +17,7 @@ from pytpc.cli.arguments import JSON, PATH, as_object
 from pytpc.cli.console import console, print_json, progress
 from pytpc.cli.options import STATIC, check, recording_of
 from pytpc.cli.sources import static_for
+from pytpc.diagnosis.margins import by_nearest
 from pytpc.diagnosis.results.margins import Behaviour
 from pytpc.present.as_json import turn_group_json
 from pytpc.present.margin_tables import (
@@ -29,7 +30,7 @@ from pytpc.static.parameters import meant_by
 
 _Order = Callable[[Behaviour], tuple[float, str]]
 _SORTS: dict[str, _Order] = {
-    "nearest": lambda one: (math.inf if one.nearest is None else one.nearest, one.parameter),
+    "nearest": by_nearest,
     "misses": lambda one: (-one.near_misses, one.parameter),
     "turns": lambda one: (-one.turns, one.parameter),
     "undecided": lambda one: (-(one.undecided or 0.0), one.parameter),

@@ -12,6 +12,7 @@ equal parts of the time.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -54,6 +55,11 @@ def behaviours(recording: Recording, static_info: StaticInfo) -> tuple[Behaviour
     streams = ResultStreams.of(with_summarised(recording), tpcs)
     found = [_behaviour(one, tpcs, static_info, recording) for one in streams.streams]
     return tuple(sorted(found, key=_order))
+
+
+def by_nearest(one: Behaviour) -> tuple[float, str]:
+    """To sort by: those that came nearest to turning first, those without margins last."""
+    return (math.inf if one.nearest is None else one.nearest, one.parameter)
 
 
 def over_missions(missions: Sequence[Sequence[Behaviour]]) -> tuple[OverMissions, ...]:

@@ -25,8 +25,11 @@ import numpy as np
 
 from pytpc.base.columns import Floats
 from pytpc.diagnosis.ranking.result_streams import CASCADE_S, ResultStreams
+from pytpc.diagnosis.ranking.summarised import with_summarised
 from pytpc.diagnosis.results.turn_groups import GroupMember, TurnGroup
 from pytpc.diagnosis.scores.score_tables import Tpcs
+from pytpc.recording.mission import Recording
+from pytpc.static.static_info import StaticInfo
 
 TOGETHER_S = 0.15
 """Turns this near to each other have no order: a loop at 10 Hz, or a message to another node, lies
@@ -61,8 +64,14 @@ class Turns:
     times: Floats
 
 
+def groups_of(recording: Recording, static_info: StaticInfo) -> tuple[TurnGroup, ...]:
+    """The groups of a recording, with the names of its static information."""
+    tpcs = Tpcs.of(static_info)
+    return groups_in(ResultStreams.of(with_summarised(recording), tpcs), tpcs)
+
+
 def groups_in(streams: ResultStreams, tpcs: Tpcs) -> tuple[TurnGroup, ...]:
-    """The groups of a recording; noise at a threshold counts as one turn."""
+    """The groups of streams; noise at a threshold counts as one turn."""
     turns = [
         Turns(tpcs.keys[one.code], one.node, tpcs.parameters[one.code], one.changes)
         for one in streams.streams

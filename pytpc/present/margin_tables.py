@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict
+from math import ceil
 
 from rich.console import Console, Group, RenderableType
 from rich.padding import Padding
@@ -98,8 +99,8 @@ def _cells(one: Behaviour) -> list[Text]:
     return [
         Text(plain(one.parameter)),
         Text("" if one.nearest is None else percent(one.nearest), style="bold" if near else ""),
-        Text("" if found is None else _short(found.median)),
-        Text("" if found is None else f"{_short(found.low)} to {_short(found.high)}"),
+        Text("" if found is None else short(found.median)),
+        Text("" if found is None else f"{short(found.low)} to {short(found.high)}"),
         Text(percent(one.true_share)),
         Text(f"{one.turns:,}"),
         Text("" if found is None else f"{one.near_misses:,}"),
@@ -109,19 +110,20 @@ def _cells(one: Behaviour) -> list[Text]:
     ]
 
 
-def _short(value: float) -> str:
+def short(value: float) -> str:
+    """A margin to compare with others at a glance."""
     return f"{value:.3g}"
 
 
 def _median(one: Behaviour | None) -> str:
-    return "" if one is None or one.margins is None else _short(one.margins.median)
+    return "" if one is None or one.margins is None else short(one.margins.median)
 
 
 def _trend(one: OverMissions) -> str:
     if one.trend is None:
         return ""
-    left = "" if one.zero_in is None else f": 0 in {one.zero_in:.0f} missions"
-    return f"{_short(one.trend)} a mission{left}"
+    left = "" if one.zero_in is None else f": 0 in {many(ceil(one.zero_in), 'mission')}"
+    return f"{short(one.trend)} a mission{left}"
 
 
 def behaviour_json(one: Behaviour) -> Json:

@@ -8,7 +8,9 @@ from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.results.advice import Advice, BlamedAdvice, RankCurves
 from pytpc.diagnosis.results.diagnosis import Diagnosis
 from pytpc.diagnosis.results.differences import RunDifferences
+from pytpc.diagnosis.results.margins import Behaviour
 from pytpc.diagnosis.results.suspects import Accused, MarkRanking
+from pytpc.diagnosis.results.turn_groups import TurnGroup
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark
 
@@ -67,7 +69,8 @@ class MissionAnswer:
     The ``top`` of its ``question`` is how many suspects of a mark have all evidence. ``diagnosis``
     is None without marks, ``curves`` if no mark has a suspect, ``lead`` if the diagnosis shows
     none, or first one that no comparison reports. ``warnings`` say what is wrong with the
-    recording.
+    recording. ``behaviours`` are what the comparisons did over the mission, the nearest to turning
+    first, and ``groups`` those that turn as one.
     """
 
     question: Question
@@ -76,6 +79,8 @@ class MissionAnswer:
     curves: RankCurves | None
     warnings: tuple[str, ...]
     lead: LeadAnswer | None = None
+    behaviours: tuple[Behaviour, ...] = ()
+    groups: tuple[TurnGroup, ...] = ()
 
     @property
     def differences(self) -> RunDifferences | None:

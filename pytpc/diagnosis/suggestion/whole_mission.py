@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from pytpc.base.wording import many, show
+from pytpc.diagnosis.margins import behaviours, by_nearest
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.results.advice import Advice, RankCurves, Remedy, Suggestion
 from pytpc.diagnosis.results.diagnosis import Diagnosis
@@ -24,6 +25,7 @@ from pytpc.diagnosis.scores.score_tables import STEP_S, rank_curves
 from pytpc.diagnosis.suggestion.advise import advise, alternatives, declared_for
 from pytpc.diagnosis.suggestion.smallest_change import At, smallest_change
 from pytpc.diagnosis.thresholds.units import threshold_of
+from pytpc.diagnosis.turn_groups import groups_of
 from pytpc.recording.events import Floats
 from pytpc.recording.faults import faults_of
 from pytpc.recording.marks import Mark
@@ -82,6 +84,8 @@ def answer_mission(
         curves=_curves(recording, static_info, rankings, question),
         warnings=tuple(faults_of(recording, static_info)),
         lead=lead,
+        behaviours=tuple(sorted(behaviours(recording, static_info), key=by_nearest)),
+        groups=groups_of(recording, static_info),
     )
 
 

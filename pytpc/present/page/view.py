@@ -20,6 +20,7 @@ from pytpc.diagnosis.results.mission_answer import MarkAnswer
 from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.present.page.cards import CardView, SuspectView, card_view, row_view
 from pytpc.present.page.figure import PageFigures
+from pytpc.present.page.margins import MarginsView, margins_view
 from pytpc.present.page.payload import embedded, marks_json
 from pytpc.present.page.reported_mission import ReportedMission
 from pytpc.present.page.timeline import timeline
@@ -85,6 +86,7 @@ class MissionView:
     changed_parameter: str | None
     changed_positions: str
     timeline: Markup
+    margins: MarginsView
     marks: list[MarkView]
     facts: list[tuple[str, str]]
     warnings: list[str]
@@ -126,6 +128,7 @@ def mission_view(
         changed_parameter=mission.changed_parameter,
         changed_positions=_positions(mission),
         timeline=still,
+        margins=margins_view(mission.answer),
         marks=marks,
         facts=_facts(mission),
         warnings=list(mission.answer.warnings),
