@@ -58,9 +58,7 @@ class _MarginsArguments:
 @click.command("margins")
 @click.argument("recordings", type=PATH, nargs=-1, required=True, metavar="RECORDING...")
 @STATIC
-@click.option(
-    "--parameter", metavar="NAME", help="Show only the comparisons with this parameter."
-)
+@click.option("--parameter", metavar="NAME", help="Show only the comparisons with this parameter.")
 @click.option(
     "--sort",
     "order",
@@ -131,9 +129,7 @@ def _print(mission: MissionMargins, names: frozenset[str], given: _MarginsArgume
     rows = sorted(_of(mission, names), key=_SORTS[given.order])
     shown = rows[: given.top]
     groups = [one for one in mission.groups if not names.isdisjoint(one.parameters)]
-    title = (
-        f"{mission.name}: {many(len(rows), 'comparison')} evaluated in {mission.seconds:.1f} s"
-    )
+    title = f"{mission.name}: {many(len(rows), 'comparison')} evaluated in {mission.seconds:.1f} s"
     print_behaviours(console(), title, shown, groups, len(rows) - len(shown))
 
 

@@ -74,10 +74,8 @@ def over_missions(missions: Sequence[Sequence[Behaviour]]) -> tuple[OverMissions
             row = places.setdefault((base_key(one.key), one.node, one.parameter), [])
             row += [None] * (number + 1 - len(row))
             row[number] = one
-    made = []
-    for row in places.values():
-        row += [None] * (len(missions) - len(row))
-        made.append(_over(tuple(row)))
+    count = len(missions)
+    made = [_over((*row, *[None] * (count - len(row)))) for row in places.values()]
     return tuple(sorted(made, key=lambda one: (one.parameter, one.key, one.node)))
 
 
@@ -114,8 +112,8 @@ def _counted(recording: Recording, key: str, node: str) -> tuple[int, int]:
 def _rows(table: Events | Summaries, key: str, node: str) -> Int64s:
     if node not in table.nodes:
         return np.zeros(0, np.int64)
-    rows = table.rows_of(key)
-    return rows[table.node[rows] == table.nodes.index(node)]
+    rows: Int64s = table.rows_of(key)
+    return np.asarray(rows[table.node[rows] == table.nodes.index(node)])
 
 
 def _behaviour(

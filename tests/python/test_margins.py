@@ -115,7 +115,9 @@ def test_flags_and_texts_have_no_margin():
     rows = [(t, 0, t % 2, t % 2, t % 2) for t in range(4)]
     (found,) = behaviours(mission(events(rows)), flag)
     assert (found.margins, found.undecided, found.nearest, found.turns) == (None, None, None, 3)
-    read = ParameterRead("~mode", "getParam", "std::string", None, "src/node.cpp", 3, 1, "Node::step")
+    read = ParameterRead(
+        "~mode", "getParam", "std::string", None, "src/node.cpp", 3, 1, "Node::step"
+    )
     text = StaticInfo.of([link_unit([comparison(0, "~mode", "==")], [read])])
     (found,) = behaviours(mission(events([(0, 0, 1, 1, 1), (1, 0, 0, 0, 1)])), text)
     assert found.margins is None

@@ -136,9 +136,7 @@ def test_the_groups_of_a_recording():
 def test_the_sentence_about_suspects():
     (turning,) = turn_groups([turns("a", 10, 50, 90), turns("b", 10, 50, 90)], SECONDS)
     group = SuspectGroup(("b", "a"), 0.62, turning)
-    assert group.sentence == (
-        "b, a: 62 % that it is one of them; they turned together, 3 times"
-    )
+    assert group.sentence == ("b, a: 62 % that it is one of them; they turned together, 3 times")
     assert group_of([group], "a") is group
     assert group_of([group], "c") is None
 
@@ -169,7 +167,9 @@ def test_suspects_that_turn_together_are_one():
 
 def test_a_group_is_blamed_that_is_sure_together():
     found = told().blame
-    a, b = (replace(one, probability=p) for one, p in zip(found.suspects[:2], (0.5, 0.35)))
+    a, b = (
+        replace(one, probability=p) for one, p in zip(found.suspects[:2], (0.5, 0.35), strict=True)
+    )
     group = replace(found.groups[0], probability=0.85)
     sure = replace(found, suspects=(a, b), none=0.15, groups=(group,))
     assert sure.accused is None, "neither of them is sure"
