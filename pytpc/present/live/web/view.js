@@ -39,6 +39,8 @@ const result = (row) => (row.res === null ? "" : row.res ? "true" : "false");
 export const nowText = (row) =>
   row.relation === "flag" ? (row.res ? "on" : "off") : row.value === "" ? "" : `${row.value} ${row.relation} ${row.threshold}`;
 
+const fileOf = (row) => row.place.split("/").at(-1);
+
 const marginText = (row) => (row.margin === "" ? "" : `${row.margin}${row.in_unit ? "" : "*"}`);
 
 // Bars of the window's parts: a low one is near the threshold.
@@ -75,6 +77,9 @@ const comparisonRow = () => {
     margin: make("span", "margin"),
     code: make("span", "code"),
   };
+  parts.what = make("span");
+  parts.file = make("span", "file");
+  parts.more.append(parts.what, parts.file);
   parts.text = make("b");
   parts.trend = trend();
   parts.margin.append(parts.trend, make("span", "unseen", " margin "), parts.text);
@@ -86,13 +91,14 @@ const comparisonRow = () => {
 };
 
 const fillNear = (item, row) => {
-  const { name, now, text, trend: svg, code } = item.parts;
+  const { name, now, text, trend: svg, code, file } = item.parts;
   put(name, row.parameter);
   put(now, nowText(row));
   put(text, marginText(row));
   text.title = row.in_unit ? "by so much the parameter would have to change" : "* difference of the compared values";
   drawTrend(svg, row);
   put(code, "");
+  put(file, ` · ${fileOf(row)}`);
   item.row.dataset.key = row.key;
   item.classList.toggle("near-it", row.share !== null && row.share < NEAR);
 };
@@ -100,11 +106,11 @@ const ageNear = (item, row, now) => {
   const since = now - row.since;
   const late = now - row.last > JUST ? `, reported ${spanText(now - row.last)} ago` : "";
   item.classList.toggle("just", since < JUST && since >= 0);
-  put(item.parts.more, `${result(row)} for ${spanText(since)}${row.topic ? ` · ${row.topic}` : ""}${late}`);
+  put(item.parts.what, `${result(row)} for ${spanText(since)}${row.topic ? ` · ${row.topic}` : ""}${late}`);
 };
 const ageHeld = (item, row, now) => {
   const exposes = row.topic ? `${row.topic} depends on it` : "what it exposes has no constant name";
-  put(item.parts.more, `${result(row)} for ${spanText(now - row.since)} · ${exposes}`);
+  put(item.parts.what, `${result(row)} for ${spanText(now - row.since)} · ${exposes}`);
 };
 
 const fillTurn = (item, row) => {
@@ -113,11 +119,11 @@ const fillTurn = (item, row) => {
   put(now, `${nowText(row)} → ${row.result ? "true" : "false"}`);
   put(text, "");
   margin.hidden = true;
-  put(code, `${row.place}  ${row.code}`);
+  put(code, `${fileOf(row)}  ${row.code}`);
   item.row.dataset.key = row.key;
 };
 const ageTurn = (item, row, now) =>
-  put(item.parts.more, `${spanText(now - row.at)} ago${row.topic ? ` · ${row.topic}` : ""}`);
+  put(item.parts.what, `${spanText(now - row.at)} ago${row.topic ? ` · ${row.topic}` : ""}`);
 
 const fillSuspect = (item, row) => {
   const { name, now, text, code, margin } = item.parts;
@@ -132,11 +138,11 @@ const fillSuspect = (item, row) => {
   put(text, row.score);
   text.title = "score: a low one is suspicious";
   margin.firstChild.toggleAttribute("hidden", true);
-  put(code, `${row.place}  ${row.code}`);
+  put(code, `${fileOf(row)}  ${row.code}`);
   item.row.dataset.key = row.key;
 };
 const ageSuspect = (item, row, now) =>
-  put(item.parts.more, row.flop === null ? "never turned" : `turned ${spanText(now - row.flop)} ago`);
+  put(item.parts.what, row.flop === null ? "never turned" : `turned ${spanText(now - row.flop)} ago`);
 
 const markRow = () => {
   const item = make("li");
@@ -233,7 +239,9 @@ export class View {
       this.label(document.querySelector(`[data-more="${name}"]`));
     }
     if (changed.has("suspects")) this.showSuspects(board.suspects);
-    if (changed.has("window_s")) put(document.getElementById("window"), String(board.window_s));
+    if (changed.has("window_s")) {
+      for (const element of document.querySelectorAll(".window")) put(element, String(board.window_s));
+    }
     if (changed.has("state")) this.showState(board.state);
   }
 
@@ -258,7 +266,8 @@ export class View {
 
   showState(state) {
     put(document.getElementById("title"), state.title || "pytpc live");
-    const said = [state.counts, ...state.lines].filter(Boolean);
+    // The clock of a recording is shown by its player.
+    const said = [state.counts, ...(state.live ? state.lines : state.lines.slice(1))].filter(Boolean);
     put(document.getElementById("state"), said.join(" · "));
   }
 
