@@ -85,6 +85,11 @@ class GraphFeed:
         until = self._first_report_until
         return self._is_heard or (until is not None and time.monotonic() >= until)
 
+    @property
+    def is_gone(self) -> bool:
+        """Whether the graph did not answer the last time that it was asked."""
+        return self._is_there is False
+
     def fault(self) -> str:
         """What is wrong with the connection, and what was broken."""
         words = [self._why_gone] if self._is_there is False else []

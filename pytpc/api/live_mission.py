@@ -53,6 +53,7 @@ class RecordedFeed:
     """
 
     live = False
+    is_gone = False
 
     def __init__(self, recording: Recording, fresh: Watching) -> None:
         """The clock is at the beginning; a copy is kept every half minute, to go back to."""
@@ -138,6 +139,16 @@ class WatchedMission:
         self._look: tuple[float, Look, tuple[object, ...]] | None = None
         self.kept = KeptRankings(options.top)
         self.watching, _ = feed.take(None)
+
+    @property
+    def is_live(self) -> bool:
+        """Whether a robot runs, and not a recording."""
+        return self._feed.live
+
+    @property
+    def is_gone(self) -> bool:
+        """Whether the graph does not answer."""
+        return self._feed.is_gone
 
     def now_ns(self) -> int | None:
         """The time that a mark would have now."""

@@ -38,6 +38,7 @@ _GROUPED = {
         "run": ("run_commands", "Run a mission up to its verdict, or one Python node."),
         "mark": ("mark_commands", "Mark errors of the robot by pressing a key."),
         "watch": ("watch_commands", "Show the suspected parameters while the robot runs; mark."),
+        "live": ("live_commands", "Serve a page that shows what decides now, and takes marks."),
         "rank": ("rank_commands", "Rank the suspected parameters, from all marks."),
         "suggest": ("suggest_commands", "Suggest a value to try, and show what it would change."),
         "report": ("report_commands", "Write a page with the suspects at each mark, and why."),

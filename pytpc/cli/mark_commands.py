@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -28,14 +27,12 @@ from pytpc.present.marking_terminal import (
 )
 from pytpc.recording.graph_places import Place, recorded_places
 from pytpc.recording.marking_session import Session
+from pytpc.recording.marks import is_observer
 from pytpc.recording.marks_file import MarksFile
 from pytpc.recording.marks_home import MarksHome, marks_home
 from pytpc.recording.mission import Recording
 from pytpc.ros.graphs import marks_at
 from pytpc.static.static_info import StaticInfo
-
-_NAMESPACE = re.compile(r"[A-Za-z]\w*(/[A-Za-z]\w*)*", re.ASCII)
-"""A namespace as ROS allows it."""
 
 _DIFFERENCES = 12
 
@@ -135,7 +132,7 @@ def check_observer(observer: str) -> None:
     Raises:
         BadParameter: it is not.
     """
-    if observer and not _NAMESPACE.fullmatch(observer):
+    if observer and not is_observer(observer):
         raise click.BadParameter(f"{observer!r} is not a ROS namespace", param_hint="--observer")
 
 

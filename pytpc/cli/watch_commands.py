@@ -117,8 +117,9 @@ def watch_command(given: _WatchArguments) -> None:
     run = None
     if given.recording is not None:
         run = RecordedRun(recording_of(given.recording), given.recording)
-    static = _static(given, graph, run)
-    fresh = fresh_watching(static, Question(given.types, given.window_s))
+    static = static_to_watch(given.static_source, given.recording, graph, run)
+    question = Question(given.types, given.window_s)
+    fresh = fresh_watching(static, question)
     layout = (None,) if given.types == "ignore" else LAYOUTS[0]
     options = WatchOptions(layout=layout, top=given.top)
     good = good_runs(given.references, static)
@@ -136,25 +137,27 @@ def watch_command(given: _WatchArguments) -> None:
         mission, feed = opened_graph(graph.master, given.observer, fresh)
     else:
         mission, feed = _opened(run, fresh)
-    judged = _judged((graph, run), static, good, given) if good else None
+    judged = judged_by((graph, run), static, given.static_source, question, good) if good else None
     believe = given.types != "ignore"
     watched = WatchedMission(mission, feed, options, believe=believe, judged=judged)
     mark_in_terminal(watched, given.observer, target, Showing(watched.paint, full=True))
     tell_where(graph)
 
 
-def _static(given: _WatchArguments, graph: UsedGraph | None, run: RecordedRun | None) -> StaticInfo:
+def static_to_watch(
+    given: Path | None, recording: Path | None, graph: UsedGraph | None, run: RecordedRun | None
+) -> StaticInfo:
     """The static information that is given, or that of the recording, running or not.
 
     Raises:
         InputError: there is none, or it has no comparison with a parameter.
     """
-    source = given.static_source or (None if graph is None else graph.static)
-    static = static_for(source, given.recording, None if run is None else run.recording)
+    source = given or (None if graph is None else graph.static)
+    static = static_for(source, recording, None if run is None else run.recording)
     if not static.thresholds:
         raise InputError("the static information has no comparison with a parameter", source)
-    if run is not None and given.recording is not None:
-        check(run.recording, static, given.recording)
+    if run is not None and recording is not None:
+        check(run.recording, static, recording)
     return static
 
 
@@ -170,15 +173,15 @@ def _opened(run: RecordedRun | None, fresh: Watching) -> tuple[MarkedMission, Fe
     return recorded(run.recording, run.source), RecordedFeed(run.recording, fresh)
 
 
-def _judged(
+def judged_by(
     watched_run: tuple[UsedGraph | None, RecordedRun | None],
     static: StaticInfo,
+    static_source: Path | None,
+    question: Question,
     good: Sequence[RecordedRun],
-    given: _WatchArguments,
 ) -> LiveDiagnosis:
     """The diagnosis beside good runs, of the recording or of the robot that runs."""
     graph, run = watched_run
-    question = Question(given.types, given.window_s)
     if run is not None:
 
         def ask(mission: Recording) -> AskedMission:
@@ -186,7 +189,7 @@ def _judged(
 
         return LiveDiagnosis(ask, run.recording)
     assert graph is not None
-    file = known_static_file(given.static_source or graph.static)
+    file = known_static_file(static_source or graph.static)
     return LiveDiagnosis(asked_of_graph(graph.master, static, file, question, good))
 
 

@@ -103,6 +103,15 @@ class RecordedMission:
         self._player = after
         return True
 
+    @property
+    def player(self) -> Player:
+        """The clock."""
+        return self._player
+
+    def go_to(self, time_ns: int) -> None:
+        """Go to a time of the recording, or to the end that is nearest to it."""
+        self._player = self._player.go_to(time_ns, time.monotonic_ns())
+
     def view(self) -> View:
         """Where the clock is, and the length of the recording."""
         player = self._player

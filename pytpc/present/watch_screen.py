@@ -308,14 +308,22 @@ def _now(row: LiveRow) -> str:
     relation = row.suspect.comparison.relation
     if relation == "flag":
         return "on" if row.last.result else "off"
-    cmp, thresh = row.last.cmp, row.last.thresh
+    left, right = told_apart(row.last.cmp, row.last.thresh)
+    return f"{left} {relation} {right}"
+
+
+def told_apart(cmp: float, thresh: float) -> tuple[str, str]:
+    """Both values with few digits, but enough that different numbers do not look equal.
+
+    >>> told_apart(0.0527, 0.058), told_apart(1.00001, 1.0)
+    (('0.0527', '0.058'), ('1.00001', '1'))
+    """
     left, right = f"{cmp:.{_FEWEST_DIGITS}g}", show(thresh)
-    # Different numbers must not look equal.
     digits = _FEWEST_DIGITS
     while left == right and cmp != thresh and digits < _ALL_DIGITS:
         digits += 1
         left, right = f"{cmp:.{digits}g}", f"{thresh:.{digits}g}"
-    return f"{left} {relation} {right}"
+    return left, right
 
 
 def _now_width(rows: Sequence[LiveRow]) -> int:

@@ -246,6 +246,11 @@ class Player:
         run = int((steady_ns - self.since_ns) * self.speed) if self.playing else 0
         return min(self.end_ns, self.at_ns + max(0, run))
 
+    def go_to(self, wanted_ns: int, steady_ns: int) -> Player:
+        """The clock at another time, or at the end that is nearest to it."""
+        at_ns = min(self.end_ns, max(self.start_ns, wanted_ns))
+        return replace(self, at_ns=at_ns, since_ns=steady_ns)
+
     def press(self, key: str, steady_ns: int) -> Player | None:
         """The clock after a key, None if the key is not for it."""
         at_ns = self.time_ns(steady_ns)
@@ -253,8 +258,7 @@ class Player:
         if key == " ":
             return replace(here, playing=not self.playing)
         if key in _STEPS_NS:
-            wanted = at_ns + _STEPS_NS[key] * 10**9
-            return replace(here, at_ns=min(self.end_ns, max(self.start_ns, wanted)))
+            return self.go_to(at_ns + _STEPS_NS[key] * 10**9, steady_ns)
         if key in {"+", "=", "-"}:
             place = SPEEDS.index(self.speed) + (-1 if key == "-" else 1)
             return replace(here, speed=SPEEDS[min(len(SPEEDS) - 1, max(0, place))])

@@ -51,6 +51,7 @@ _NUMBER = r"(\d{1,6}(?:\.\d{1,3})?)"
 _BEGAN = re.compile(rf"(?<!\S)@-{_NUMBER}(?:(?:\.\.-?|-){_NUMBER})?[{_ENDS}]*(?!\S)", re.ASCII)
 _MOST_SECONDS = 999_999.0
 _SECONDS = rf"{_NUMBER}\s*s?"
+_NAMESPACE = re.compile(r"[A-Za-z]\w*(/[A-Za-z]\w*)*", re.ASCII)
 _TYPED = re.compile(rf"{_SECONDS}(?:\s*(?:-|\.\.|to)\s*{_SECONDS})?", re.ASCII)
 
 
@@ -117,6 +118,15 @@ def is_place(name: str) -> bool:
     (True, True, True, False)
     """
     return len(name) <= _LONGEST_PLACE and re.fullmatch(_NAME, name) is not None
+
+
+def is_observer(name: str) -> bool:
+    """Whether an observer can have this name: it is a namespace as ROS allows it.
+
+    >>> is_observer("ana"), is_observer("lab/ana"), is_observer("2nd"), is_observer("")
+    (True, True, False, False)
+    """
+    return _NAMESPACE.fullmatch(name) is not None
 
 
 def with_where(note: str, where: Iterable[str]) -> str:

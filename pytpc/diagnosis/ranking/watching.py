@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import copy
 import math
+from array import array
+from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -15,17 +17,23 @@ from pytpc.diagnosis.full_names import is_of_ros2, with_full_names
 from pytpc.diagnosis.question import WINDOW_S
 from pytpc.diagnosis.results.live import Kept, LiveRow, Look, Seen, TrendPart
 from pytpc.diagnosis.results.suspects import MarkRanking, Suspect
+from pytpc.diagnosis.results.turning import Compared
 from pytpc.diagnosis.scores.live_scores import LiveRanking
 from pytpc.recording.events import Events
 from pytpc.recording.marking_session import MarkChange
 from pytpc.recording.marks import Mark, MarkType
 from pytpc.recording.mission import ReadName, Recording
 from pytpc.recording.summaries import Summary
-from pytpc.static.parameters import base_key
+from pytpc.static.parameters import base_key, parameter_name
 from pytpc.static.static_info import StaticInfo
 
 BINS = 8
 """The number of parts of the window that are shown of each comparison."""
+
+_MOST_TURNS = 50
+_LINE_POINTS = 480
+_LINE_STEP_S = 0.25
+"""At least so far apart are the kept values of a comparison: two minutes, or more of summaries."""
 
 _MOST_WAITING = 100_000
 _NOBODY: frozenset[str] = frozenset()
@@ -53,6 +61,19 @@ class _Track:
     low: float = math.inf
     high: float = -math.inf
     bins: dict[int, _Bin] = field(default_factory=dict)
+    since: dict[str, tuple[int, bool]] = field(default_factory=dict)
+    """By node: since when it has had its present result."""
+    line: array[float] = field(default_factory=lambda: array("d"))
+    """The last values as time (s), cmp, thresh, one after the other: flat, as copies are cheap."""
+
+    def draw(self, seen: Seen) -> None:
+        """Keep the values for a line, unless the last ones are just before."""
+        seconds = seen.time_ns / 1e9
+        if self.line and not self.line[-3] + _LINE_STEP_S <= seconds:
+            return
+        self.line.extend((seconds, seen.cmp, seen.thresh))
+        if len(self.line) > 6 * _LINE_POINTS:
+            del self.line[: 3 * _LINE_POINTS]
 
 
 class Watching:
@@ -92,6 +113,8 @@ class Watching:
         self.evaluations = 0
         self.last_ns: int | None = None
         self.nodes: set[str] = set()
+        self.turns: deque[Seen] = deque(maxlen=_MOST_TURNS)
+        """The last flops, the newest last."""
         self.unknown: dict[str, int] = {}
 
     @property
@@ -115,9 +138,13 @@ class Watching:
             if before is not None and before[1] != seen.result:
                 track.flop_ns = max(seen.time_ns, track.flop_ns or seen.time_ns)
                 part.flops += 1
+                self.turns.append(seen)
             track.results[seen.node] = seen.time_ns, seen.result
+            if before is None or before[1] != seen.result:
+                track.since[seen.node] = seen.time_ns, seen.result
         if track.last is None or track.last.time_ns <= seen.time_ns:
             track.last = seen
+            track.draw(seen)
         difference = abs(seen.cmp - seen.thresh)
         if math.isfinite(difference):
             part.total += difference
@@ -138,6 +165,8 @@ class Watching:
         if track.last is None or track.last.time_ns <= summary.end_ns:
             values = summary.result, summary.cmp, summary.thresh, summary.res
             track.last = Seen(summary.end_ns, summary.key, summary.node, *values)
+            track.draw(track.last)
+        self._note_result(track, summary)
         finite = summary.count - summary.odd
         if finite and math.isfinite(summary.abs_mean):
             part = self._bin(track, summary.end_ns)
@@ -145,6 +174,17 @@ class Watching:
             part.count += finite
             track.low = min(track.low, summary.low)
             track.high = max(track.high, summary.high)
+
+    @staticmethod
+    def _note_result(track: _Track, summary: Summary) -> None:
+        """Since when a node has had its result, where flops were not reported one by one."""
+        since = track.since.get(summary.node)
+        if since is None:
+            track.since[summary.node] = summary.begin_ns, summary.result
+        elif summary.end_ns >= since[0] and (
+            since[1] != summary.result or (summary.flops and since[0] < summary.begin_ns)
+        ):
+            track.since[summary.node] = summary.end_ns, summary.result
 
     def take_name(self, name: ReadName) -> None:
         """Take in the name of a parameter; nodes repeat them."""
@@ -227,6 +267,38 @@ class Watching:
             max((ranking.parameters for ranking in rankings.values()), default=0),
         )
 
+    def compared(self, now_ns: int, recent_s: float) -> list[Compared]:
+        """The comparisons with parameters that were evaluated within the last ``recent_s``."""
+        if self._has_new_names or self._waiting:
+            self._learn()
+        earliest = now_ns - round(recent_s * 1e9)
+        found = []
+        for key, track in self._tracks.items():
+            comparison = self._known.get(key)
+            last = track.last
+            if comparison is None or comparison.type == "constant" or last is None:
+                continue
+            if last.time_ns < earliest:
+                continue
+            since_ns, _ = track.since.get(last.node, (last.time_ns, last.result))
+            spread = track.high - track.low
+            found.append(
+                Compared(
+                    comparison,
+                    parameter_name(comparison),
+                    last,
+                    since_ns,
+                    spread if spread > 0 else 0.0,
+                    self._parts(track, now_ns),
+                )
+            )
+        return found
+
+    def line_of(self, key: str) -> tuple[list[float], list[float], list[float]]:
+        """The last values of a comparison: times (s), compared values and thresholds."""
+        line = self._tracks[key].line if key in self._tracks else array("d")
+        return line[::3].tolist(), line[1::3].tolist(), line[2::3].tolist()
+
     def snapshot(self) -> Watching:
         """An independent copy, which shares what the analysis found."""
         shared: Iterable[object] = (
@@ -254,6 +326,9 @@ class Watching:
     def _row(self, suspect: Suspect, now_ns: int) -> LiveRow:
         track = self._tracks.get(suspect.key, _Track())
         flop_s = None if track.flop_ns is None else max(0, now_ns - track.flop_ns) / 1e9
+        return LiveRow(suspect, track.last, flop_s, self._parts(track, now_ns))
+
+    def _parts(self, track: _Track, now_ns: int) -> tuple[TrendPart, ...]:
         newest = now_ns // self._bin_ns
         spread = track.high - track.low
         parts = []
@@ -262,7 +337,7 @@ class Watching:
             known = part.count > 0 and spread > 0
             mean = part.total / part.count / spread if known else math.nan
             parts.append(TrendPart(min(1.0, mean) if known else math.nan, part.flops > 0))
-        return LiveRow(suspect, track.last, flop_s, tuple(parts))
+        return tuple(parts)
 
 
 class KeptRankings(list[Kept]):

@@ -1,0 +1,1 @@
+"""The page of `pytpc live`: plain HTML, CSS and JavaScript, and Bokeh's script."""
