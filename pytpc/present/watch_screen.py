@@ -216,6 +216,11 @@ def _evidence(shown: tuple[Look, Layout], width: int, *, stacked: bool) -> list[
         line.plain = plain(line.plain)
         line.truncate(width)
         lines += [line, Text(cut(f"    {(found.source_code or '').strip()}", width), style="dim")]
+        group = look.group_of(row)
+        others = () if group is None else group.parameters
+        if group is not None and len(others) > 1:
+            with_it = ", ".join(plain(one) for one in others if one != row.suspect.parameter)
+            lines.append(Text(cut(f"    with {with_it}: they {group.text}", width)))
     return lines if len(lines) > 3 else []
 
 

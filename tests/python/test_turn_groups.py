@@ -11,6 +11,7 @@ from mission_samples import comparison, events, key, ns, static_info
 from rich.console import Console
 
 from pytpc.diagnosis.diagnose import diagnose_mission
+from pytpc.diagnosis.ranking.live_groups import LiveGroups
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.results.turn_groups import SuspectGroup, group_of
 from pytpc.diagnosis.scores.score_tables import Tpcs
@@ -194,3 +195,26 @@ def test_the_answers_show_the_group():
     assert (document["kind"], document["turns"]) == ("together", 3)
     assert [one["parameter"] for one in document["members"]] == ["~a", "~b"]
     assert f"{a}, {b}: " in str(Diagnosed.of(found))
+
+
+def live(pairs, now_s):
+    groups = LiveGroups()
+    for key_, t in sorted(pairs, key=lambda one: one[1]):
+        groups.turned(key_, "/node", ns(t))
+    return groups, groups.groups(ns(now_s), lambda one: f"~{one}" if one != "hidden" else None)
+
+
+def test_the_groups_of_a_running_mission():
+    pairs = [(name, t + 0.05 * n) for n, name in enumerate(("a", "b", "hidden")) for t in (5, 90)]
+    groups, (found,) = live(pairs, 100)
+    assert found.parameters == ("~a", "~b")
+    # Nothing new: the same answer; old turns are forgotten.
+    assert groups.groups(ns(120), str) == (found,)
+    groups.turned("a", "/node", ns(900))
+    assert groups.groups(ns(901), str) == ()
+
+
+def test_noise_at_a_threshold_is_one_turn_while_it_runs():
+    noisy = [(name, 5 + 0.2 * n) for n in range(50) for name in ("a", "b")]
+    # From 5 to 14.8 s they turn each 0.2 s: one turn, and one says nothing.
+    assert live(noisy, 100)[1] == ()

@@ -15,8 +15,10 @@ from dataclasses import dataclass, field
 
 from pytpc.diagnosis.full_names import is_of_ros2, with_full_names
 from pytpc.diagnosis.question import WINDOW_S
+from pytpc.diagnosis.ranking.live_groups import LiveGroups
 from pytpc.diagnosis.results.live import Kept, LiveRow, Look, Seen, TrendPart
 from pytpc.diagnosis.results.suspects import MarkRanking, Suspect
+from pytpc.diagnosis.results.turn_groups import TurnGroup
 from pytpc.diagnosis.results.turning import Compared
 from pytpc.diagnosis.scores.live_scores import LiveRanking
 from pytpc.recording.events import Events
@@ -115,6 +117,7 @@ class Watching:
         self.nodes: set[str] = set()
         self.turns: deque[Seen] = deque(maxlen=_MOST_TURNS)
         """The last flops, the newest last."""
+        self._groups = LiveGroups()
         self.unknown: dict[str, int] = {}
 
     @property
@@ -139,6 +142,7 @@ class Watching:
                 track.flop_ns = max(seen.time_ns, track.flop_ns or seen.time_ns)
                 part.flops += 1
                 self.turns.append(seen)
+                self._groups.turned(seen.key, seen.node, seen.time_ns)
             track.results[seen.node] = seen.time_ns, seen.result
             if before is None or before[1] != seen.result:
                 track.since[seen.node] = seen.time_ns, seen.result
@@ -265,6 +269,7 @@ class Watching:
             },
             {kind: "" if r.enough else r.reason for kind, r in rankings.items()},
             max((ranking.parameters for ranking in rankings.values()), default=0),
+            self.groups(now_ns),
         )
 
     def compared(self, now_ns: int, recent_s: float) -> list[Compared]:
@@ -293,6 +298,15 @@ class Watching:
                 )
             )
         return found
+
+    def groups(self, now_ns: int) -> tuple[TurnGroup, ...]:
+        """The comparisons that turn as one, by the turns of the last minutes."""
+
+        def name_of(key: str) -> str | None:
+            found = self._known.get(key)
+            return None if found is None else parameter_name(found)
+
+        return self._groups.groups(now_ns, name_of)
 
     def line_of(self, key: str) -> tuple[list[float], list[float], list[float]]:
         """The last values of a comparison: times (s), compared values and thresholds."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from pytpc.diagnosis.results.suspects import MarkRanking, Suspect
+from pytpc.diagnosis.results.turn_groups import TurnGroup
 from pytpc.recording.marks import Mark, MarkType
 
 _NAMED = 3
@@ -48,13 +49,22 @@ class LiveRow:
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """What to show of one instant: the rows by type (None: both combined), and the reasons if there
-    are none."""
+    """What to show of one instant: the rows by type (None: both combined), the reasons if there are
+    none, and the groups of comparisons that turn as one."""
 
     now_ns: int
     rows: Mapping[MarkType | None, tuple[LiveRow, ...]]
     reasons: Mapping[MarkType | None, str]
     parameters: int
+    groups: tuple[TurnGroup, ...] = ()
+
+    def group_of(self, row: LiveRow) -> TurnGroup | None:
+        """The group of a suspect's comparison."""
+        node = None if row.last is None else row.last.node
+        for group in self.groups:
+            if any((one.key, one.node) == (row.suspect.key, node) for one in group.members):
+                return group
+        return None
 
 
 class Kept(NamedTuple):
