@@ -258,7 +258,7 @@ def _declarer(static: StaticInfo, declared: Collection[str]) -> Callable[[Site],
         if name.rpartition("/")[2].lstrip("~") in declared:
             return True
         reads = [
-            (static.unit_of(key.key).absolute(at.file), at.lineno)
+            (static.unit_of(key.key).absolute(at.file), at.lineno, name)
             for key in one.tpc.keys
             for at in static.comparisons[key.key].param_reads
         ]

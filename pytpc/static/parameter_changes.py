@@ -145,13 +145,13 @@ def parameter_changes(
 
 def declared_in_code(
     units: Iterable[LinkUnit],
-) -> tuple[Mapping[tuple[str, int], bool], Collection[str]]:
-    """Where reads declare their parameter, by (absolute file, line), and the names of these.
+) -> tuple[Mapping[tuple[str, int, str], bool], Collection[str]]:
+    """Which reads declare their parameter, by (absolute file, line, name), and these names.
 
     A read declares it with a default, with ``declare_parameter`` of ROS 2, or as a field of
     dynamic_reconfigure, which comes from a ``.cfg`` file.
     """
-    places: dict[tuple[str, int], bool] = {}
+    places: dict[tuple[str, int, str], bool] = {}
     names = set()
     for unit in units:
         for read in unit.parameters:
@@ -160,7 +160,7 @@ def declared_in_code(
                 or _RECONFIGURE in read.api
                 or read.api.endswith(_WITH_DEFAULT)
             )
-            at = unit.absolute(read.file), read.lineno
+            at = unit.absolute(read.file), read.lineno, read.name
             places[at] = places.get(at, False) or is_declared
             if is_declared:
                 names.add(read.name)
