@@ -13,7 +13,8 @@ import pytest
 from click.testing import CliRunner, Result
 from jsonschema import Draft4Validator
 from markdown_it import MarkdownIt
-from static_units import comparison, unit
+from static_units import comparison, spot, unit
+from test_command_line_page import WORDS, fields
 
 from pytpc.cli.main import main
 from pytpc.present.comparison_markdown import MOST, code
@@ -123,6 +124,21 @@ def test_json(both: tuple[str, str]) -> None:
     assert document["rules"][0] == {
         "rule": "new", "is_asked": True, "is_broken": True, "most": 0, "found": 1,
     }  # fmt: skip
+
+
+def test_every_field_is_on_the_page(both: tuple[str, str], write: Write) -> None:
+    documents = [run(*both, "--json").stdout, run(*_other_units(write), "--json").stdout]
+    for document in map(json.loads, documents):
+        assert document["comparisons"]
+        assert set(fields(document)) <= WORDS
+
+
+def _other_units(write: Write) -> tuple[str, str]:
+    """A unit that is gone and one that was renamed, a gone parameter, a new blind spot."""
+    old = [unit(), unit(link_unit="b", parameters=[], exposing=[], comparisons=[LINES["gone"]])]
+    lost = spot("lost_value", "size", 20, "enters f()")
+    new = unit(link_unit="c", parameters=[], blind_spots=[lost])
+    return write("a.json", *old), write("b.json", new)
 
 
 # ---- The budget.

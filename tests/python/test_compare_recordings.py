@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 from mission_samples import SummaryBuilder, comparison, events, key, link_unit, ns
+from test_command_line_page import WORDS, fields
 
 from pytpc.api.comparing import is_recording
 from pytpc.cli.main import main
@@ -205,6 +206,7 @@ def test_the_command_as_json(other: Path):
     assert document["kind"] == "recordings"
     assert document["new"] == {"name": "shorter", "seconds": 30.0, "unknown": 0}
     assert len(document["comparisons"]) == 34
+    assert set(fields(document)) <= WORDS
 
 
 def test_a_recording_with_itself_is_refused(tmp_path: Path):
