@@ -10,9 +10,11 @@ from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import PurePosixPath
 from typing import Literal
 
 from pytpc.base.wording import listed, many
+from pytpc.static.builds import program_name
 from pytpc.static.edits import Edit, edits_of
 from pytpc.static.link_unit import BlindSpot, LinkUnit
 from pytpc.static.matching import Site, function_name, matched, sites_of
@@ -59,7 +61,7 @@ class ComparisonChange:
         """The distances, if they differ; None if not, or if there are not two."""
         if self.old is None or self.new is None:
             return None
-        both = self.old.tpc.distance, self.new.tpc.distance
+        both = self.old.distance, self.new.distance
         return both if both[0] != both[1] else None
 
     @property
@@ -145,7 +147,9 @@ def changes_between(
             both known.
     """
     missing, added, renamed = _units(old, new)
-    before, after = sites_of(old, constants=constants), sites_of(new, constants=constants)
+    names = {program_name(unit) for unit in old.units}, {program_name(unit) for unit in new.units}
+    shared = names[0] & names[1]
+    before, after = (sites_of(one, constants=constants, shared=shared) for one in (old, new))
     pairs = matched(before, after)
     is_declared = _declarer(new, declared)
     paired = {id(one) for pair in pairs for one in pair}
@@ -156,7 +160,7 @@ def changes_between(
         if id(one) not in paired
     ]
     found.sort(key=_place)
-    failed = {name_of(unit) for unit in new.units if unit.failure is not None}
+    failed = {program_name(unit) for unit in new.units if unit.failure is not None}
     unbuilt = {*missing, *failed}
     gone = [one for one in before if id(one) not in paired]
     found += [ComparisonChange("gone", one, None, missing=_missing(one, unbuilt)) for one in gone]
@@ -174,11 +178,6 @@ def changes_between(
     )
 
 
-def name_of(unit: LinkUnit) -> str:
-    """``package/link unit``."""
-    return f"{unit.package}/{unit.link_unit}"
-
-
 def _place(one: ComparisonChange) -> tuple[object, ...]:
     tpc = one.site.tpc
     return tpc.package, tpc.place, tpc.lineno, tpc.column, one.site.threshold
@@ -188,8 +187,8 @@ def _units(
     old: StaticInfo, new: StaticInfo
 ) -> tuple[tuple[str, ...], tuple[str, ...], tuple[tuple[str, str], ...]]:
     """The link units that only the old build has, only the new one, and those that were renamed."""
-    before = {name_of(unit): unit for unit in old.units}
-    after = {name_of(unit): unit for unit in new.units}
+    before = {program_name(unit): unit for unit in old.units}
+    after = {program_name(unit): unit for unit in new.units}
     missing = [name for name in before if name not in after]
     added = [name for name in after if name not in before]
     renamed = []
@@ -216,11 +215,11 @@ def _missing(one: Site, unbuilt: Collection[str]) -> tuple[str, ...]:
 
 
 def _unanalysed(old: StaticInfo, new: StaticInfo) -> tuple[str, ...]:
-    before = {name_of(unit) for unit in old.units if unit.trouble is not None}
+    before = {program_name(unit) for unit in old.units if unit.trouble is not None}
     return tuple(
         unit.trouble
         for unit in new.units
-        if unit.trouble is not None and name_of(unit) not in before
+        if unit.trouble is not None and program_name(unit) not in before
     )
 
 
@@ -308,24 +307,34 @@ def _spots(old: StaticInfo, new: StaticInfo) -> tuple[tuple[SpotChange, ...], in
 
 
 def _by_identity(static: StaticInfo) -> dict[_SpotIdentity, list[SpotChange]]:
+    packages = {unit.source_root.rstrip("/"): unit.package for unit in static.units}
     found: dict[_SpotIdentity, list[SpotChange]] = {}
     seen = set()
     for unit in static.units:
         for spot in unit.blind_spots:
-            place = unit.absolute(spot.file), spot.lineno, spot.column, spot.kind, spot.parameter
+            file = unit.absolute(spot.file)
+            place = file, spot.lineno, spot.column, spot.kind, spot.parameter
             if place in seen:
                 continue
             seen.add(place)
             identity = (
-                unit.package,
-                spot.file,
+                *_in_package(file, packages),
                 function_name(spot.function),
                 spot.kind,
                 spot.parameter,
                 spot.source_code or spot.what,
             )
-            found.setdefault(identity, []).append(SpotChange(name_of(unit), spot))
+            found.setdefault(identity, []).append(SpotChange(program_name(unit), spot))
     return found
+
+
+def _in_package(file: str, packages: Mapping[str, str]) -> tuple[str, str]:
+    """The package whose folder has a file, and the file in it; else only the file's name."""
+    path = PurePosixPath(file)
+    for root in path.parents:
+        if str(root) in packages:
+            return packages[str(root)], str(path.relative_to(root))
+    return "", path.name
 
 
 def spots_by_kind(spots: Iterable[SpotChange]) -> list[str]:

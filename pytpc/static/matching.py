@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 
@@ -31,8 +31,8 @@ class Site:
     """A comparison in the source of one build.
 
     ``nearest`` is that of the link unit in which its exposing statement is nearest, ``unit`` this
-    link unit. ``defaults``, ``topics`` and ``transforms`` are those of all its link units, each
-    once.
+    link unit. ``defaults``, ``topics`` and ``transforms`` are those of all its link units that both
+    builds have, each once.
     """
 
     tpc: Tpc
@@ -46,6 +46,11 @@ class Site:
     def threshold(self) -> str:
         """The parameter, or the constant."""
         return self.tpc.parameter or self.tpc.name or "?"
+
+    @property
+    def distance(self) -> int:
+        """The distance in the nearest link unit that both builds have."""
+        return self.nearest.distance
 
     @property
     def text(self) -> str:
@@ -86,17 +91,28 @@ def function_name(signature: str) -> str:
     return signature
 
 
-def sites_of(static: StaticInfo, *, constants: bool = False) -> list[Site]:
-    """The comparisons of a build in the order of their places; with constants if asked for."""
-    return [_site(static, tpc) for tpc in static.tpcs if constants or tpc.type != "constant"]
+def sites_of(
+    static: StaticInfo, *, constants: bool = False, shared: Collection[str] = ()
+) -> list[Site]:
+    """The comparisons of a build in the order of their places.
+
+    Args:
+        static: the build.
+        constants: whether those with constants count.
+        shared: the link units (``package/name``) that the other build has, too. Of a place that is
+            in one of them, only these say what it is: what other units add is no change of it.
+    """
+    wanted = (tpc for tpc in static.tpcs if constants or tpc.type != "constant")
+    return [_site(static, tpc, shared) for tpc in wanted]
 
 
-def _site(static: StaticInfo, tpc: Tpc) -> Site:
-    every = [static.comparisons[key.key] for key in tpc.keys]
+def _site(static: StaticInfo, tpc: Tpc, shared: Collection[str]) -> Site:
+    keys = [key for key in tpc.keys if f"{key.package}/{key.link_unit}" in shared] or tpc.keys
+    every = [static.comparisons[key.key] for key in keys]
     return Site(
         tpc=tpc,
         nearest=every[0],
-        unit=static.unit_of(tpc.key),
+        unit=static.unit_of(keys[0].key),
         # 1, 1.0 and True are equal and not the same.
         defaults=tuple(sorted({repr(o.default): o.default for o in every}.values(), key=repr)),
         topics=tuple(sorted({one.topic for one in every if one.topic is not None})),

@@ -9,6 +9,7 @@ from difflib import SequenceMatcher
 from typing import Literal, NamedTuple
 
 from pytpc.base.wording import Number, exact, listed, tidy
+from pytpc.static.builds import program_name
 from pytpc.static.coverage import STATES, Covered, State, coverage
 from pytpc.static.link_unit import Default, LinkUnit, ParameterRead
 from pytpc.static.matching import Site, function_name
@@ -87,7 +88,7 @@ class _Read:
     """A parameter of a package, in all its link units."""
 
     state: State
-    reads: list[ParameterRead] = field(default_factory=list)
+    reads: list[tuple[str, ParameterRead]] = field(default_factory=list)
     covered: list[Covered] = field(default_factory=list)
     units: set[str] = field(default_factory=set)
 
@@ -95,9 +96,16 @@ class _Read:
     def places(self) -> tuple[str, ...]:
         return tuple(dict.fromkeys(place for one in self.covered for place in one.reads))
 
+    def defaults(self, units: Collection[str] = ()) -> tuple[Default, ...]:
+        """Those of its reads in these link units, or of all if none of them reads it."""
+        reads = [read for unit, read in self.reads if unit in units]
+        reads = reads or [read for _, read in self.reads]
+        return tuple(sorted({repr(o.default): o.default for o in reads}.values(), key=repr))
+
     @property
-    def defaults(self) -> tuple[Default, ...]:
-        return tuple(sorted({repr(o.default): o.default for o in self.reads}.values(), key=repr))
+    def ways(self) -> set[tuple[str, str, str]]:
+        """How it is read: type, default and function."""
+        return {(r.type, repr(r.default), function_name(r.function)) for _, r in self.reads}
 
 
 _Names = Mapping[tuple[str, str], _Read]
@@ -171,10 +179,10 @@ def _read(static: StaticInfo) -> _Names:
     """Each parameter that is read, by package and name; the most telling of its states."""
     order = list(STATES)
     found: dict[tuple[str, str], _Read] = {}
-    reads: defaultdict[tuple[str, str], list[ParameterRead]] = defaultdict(list)
+    reads: defaultdict[tuple[str, str], list[tuple[str, ParameterRead]]] = defaultdict(list)
     for unit in static.units:
         for read in unit.parameters:
-            reads[unit.package, read.name].append(read)
+            reads[unit.package, read.name].append((program_name(unit), read))
     for one in coverage(static):
         name = one.package, one.parameter
         known = found.setdefault(name, _Read(one.state, reads[name]))
@@ -189,7 +197,7 @@ def _come_or_gone(
     kind: Literal["new", "gone"], name: tuple[str, str], one: _Read, unbuilt: Collection[str]
 ) -> ParameterChange:
     package, parameter = name
-    said = f"{STATES[one.state]}; default {shown_defaults(one.defaults)}"
+    said = f"{STATES[one.state]}; default {shown_defaults(one.defaults())}"
     is_unbuilt = kind == "gone" and one.units <= set(unbuilt)
     ends = (said, "") if kind == "gone" else ("", said)
     return ParameterChange(
@@ -212,8 +220,10 @@ def _kept(name: tuple[str, str], old: _Read, new: _Read) -> Iterator[ParameterCh
             listed(list(dict.fromkeys(why)), _NAMED),
             new.places,
         )
-    if list(map(repr, old.defaults)) != list(map(repr, new.defaults)):
-        told = shown_defaults(old.defaults), shown_defaults(new.defaults)
+    shared = old.units & new.units
+    both = old.defaults(shared), new.defaults(shared)
+    if list(map(repr, both[0])) != list(map(repr, both[1])):
+        told = shown_defaults(both[0]), shown_defaults(both[1])
         yield ParameterChange("default", package, parameter, *told, places=new.places)
 
 
@@ -253,10 +263,7 @@ def _likeness(
     if compared:
         return 1 + compared + ratio, "the same comparisons are with it"
     one, it = reads
-    same = {(r.type, repr(r.default), function_name(r.function)) for r in one.reads}
-    if ratio >= _ALIKE and same & {
-        (r.type, repr(r.default), function_name(r.function)) for r in it.reads
-    }:
+    if ratio >= _ALIKE and one.ways & it.ways:
         return ratio, "read in the same function with the same type and default"
     return 0.0, ""
 

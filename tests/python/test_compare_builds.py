@@ -97,6 +97,18 @@ def test_a_place_in_two_link_units_counts_once() -> None:
     assert [one.status for one in changes_between(build(), build(*both)).comparisons] == ["new"]
 
 
+# The second program exposes on another topic, with another default: that it is not built, or built
+# for the first time, is no edit of the comparison.
+def test_what_another_link_unit_says_is_no_edit() -> None:
+    one = unit(comparisons=[comparison(key=key(1), distance=4)])
+    other = comparison(key=key(2), topic="/other", default=9, distance=1)
+    both = build(one, unit(comparisons=[other], link_unit="other"))
+    assert said(both, build(one)) == []
+    assert said(build(one), both) == []
+    found = changes_between(both, build(one))
+    assert (found.farther, found.parameters) == ([], ())
+
+
 # ---- Two lines that are alike.
 
 
@@ -266,6 +278,12 @@ def test_only_new_blind_spots_are_told_wherever_they_moved() -> None:
     both = changes_between(spots(), spots(call, lost))
     assert new_ones(both) == [("lost_value", 50), ("indirect_call", 20)]
     assert changes_between(spots(call, lost), spots(call)).closed == 1
+    # A library that another unit reads first is the same library.
+    header = {**lost, "file": "/ws/src/base/base.h", "source_code": "f(rate)"}
+    base = unit(package="base", source_root="/ws/src/base", link_unit="base", comparisons=[])
+    first = unit(package="a", source_root="/ws/src/a", blind_spots=[header], comparisons=[])
+    second = unit(blind_spots=[header])
+    assert new_ones(changes_between(build(base, second), build(base, first, second))) == []
     # A second one like it is new.
     twice = changes_between(spots(lost), spots(lost, same_line))
     assert new_ones(twice) == [("lost_value", 70)]
