@@ -11,6 +11,8 @@ tables, and are tables in a notebook (with all texts from the robot escaped).
 ``suggest``                which value to try
 ``what_if``                what a value would have changed (a replay)
 ``write_report``           a page with the answers and the evidence
+``compare_builds``         what a change of the code does to the comparisons
+``compare_decisions``      what two recordings decided differently
 ``build``, ``analyse``,    static information
 ``collect``
 ``record_launch``,         a mission
@@ -31,6 +33,8 @@ from importlib import import_module
 _PLACES = {
     "missions": ("convert", "load_static", "read"),
     "diagnosing": ("Rankings", "curves", "diagnose", "rank"),
+    "comparing_builds": ("compare_builds",),
+    "comparing_decisions": ("compare_decisions",),
     "suggesting": ("suggest", "what_if"),
     "report": ("write_report",),
     "building": ("BuildOptions", "analyse", "build", "collect"),
