@@ -85,6 +85,26 @@ def sides(line: str | None, name: str | None, relation: str) -> Sides | None:
     return found[0] if len(found) == 1 else None
 
 
+def only_comparison(line: str | None, relation: str) -> tuple[str, str] | None:
+    """Both sides of the only comparison of a line with this operator, or the mirrored one.
+
+    They are as with ``relation``, so that ``a > b`` and ``b < a`` give the same. None if the line
+    has several such comparisons, or none.
+
+    >>> only_comparison("if (ready && now > limit())", ">"), only_comparison("limit() < now)", ">")
+    (('now', 'limit()'), ('now', 'limit()'))
+    """
+    if not line or relation not in MIRRORED:
+        return None
+    found = []
+    for left, written, right in _comparisons(line):
+        if written == relation:
+            found.append((left, right))
+        elif written == MIRRORED[relation]:
+            found.append((right, left))
+    return found[0] if len(found) == 1 else None
+
+
 def is_negated(line: str | None, name: str | None) -> bool | None:
     """Whether a flag is read with a ``!`` or ``not`` before it; None if that is not clear.
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from pytpc.base.wording import listed
-from pytpc.static.compared_text import MIRRORED, is_negated, sides
+from pytpc.static.compared_text import MIRRORED, is_negated, only_comparison, sides
 from pytpc.static.matching import Site
 from pytpc.static.parameter_changes import shown_defaults
 
@@ -66,7 +66,7 @@ def _text_edits(old: Site, new: Site) -> Iterator[Edit]:
     """What the lines say of the other side of the comparison.
 
     The threshold's own side does not count: its parameter, default and arithmetic do. If the line
-    does not tell the sides, the whole of it does.
+    does not tell the sides, both do; if it does not tell the comparison, the whole of it does.
     """
     if old.text == new.text:
         return
@@ -80,6 +80,8 @@ def _text_edits(old: Site, new: Site) -> Iterator[Edit]:
             return
     one, other = (sides(*line, old.tpc.relation) for line in lines)
     if one is None or other is None:
-        yield Edit("condition", old.source_line.strip(), new.source_line.strip())
+        whole = [only_comparison(line, old.tpc.relation) for line, _ in lines]
+        if whole[0] is None or whole[0] != whole[1]:
+            yield Edit("condition", old.source_line.strip(), new.source_line.strip())
     elif one.compared != other.compared:
         yield Edit("compared value", one.compared, other.compared)

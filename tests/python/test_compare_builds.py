@@ -190,6 +190,17 @@ def test_an_edited_line_that_moved_is_still_that_line() -> None:
     assert said(of(comparison()), of(new)) == [("changed", "operator: > -> >=")]
 
 
+# The threshold is what a method returns, so that its variable is not in the line.
+def test_a_condition_that_is_broken_in_two_lines_is_no_change() -> None:
+    old = comparison(name="tolerance_", source_code="if (now - stamp > map->tolerance())")
+    two = {**old, "source_code": "now - stamp > map->tolerance())"}
+    assert said(of(old), of(two)) == []
+    other = {**old, "source_code": "now - start > map->tolerance())"}
+    assert said(of(old), of(other)) == [
+        ("changed", f"condition: {old['source_code']} -> {other['source_code']}")
+    ]
+
+
 def test_a_flag_that_is_negated_changed() -> None:
     flag = comparison(
         type="flag", relation="flag", name="use_gps_", source="use_gps", default=True,
