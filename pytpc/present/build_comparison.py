@@ -134,7 +134,8 @@ def _is_elsewhere(one: ComparisonChange) -> bool:
 def _parameter(one: ParameterChange) -> Iterator[Text]:
     yield _line(" ", "", f"{one.parameter}  {one.package}: {parameter_text(one)}")
     if one.places:
-        yield Text(plain(f"      read at {listed(one.places, _NAMED)}"))
+        what = "declared" if one.kind == "declared" else "read"
+        yield Text(plain(f"      {what} at {listed(one.places, _NAMED)}"))
 
 
 def parameter_text(one: ParameterChange) -> str:
@@ -148,7 +149,11 @@ def parameter_text(one: ParameterChange) -> str:
     if one.kind in ("new", "gone"):
         unbuilt = "; its link units are missing" if one.is_unbuilt else ""
         return f"{title} ({one.new or one.old}){unbuilt}"
-    return f"{title}: {one.old or 'not declared'} -> {one.new or 'not declared'}"
+    if not one.old or not one.new:
+        return (
+            f"a .cfg file declares it {'only now' if one.new else 'no more'}: {one.new or one.old}"
+        )
+    return f"{title}: {one.old} -> {one.new}"
 
 
 def spot_text(one: SpotChange) -> str:

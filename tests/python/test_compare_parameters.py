@@ -9,9 +9,10 @@ import pytest
 from static_units import KEYS, comparison, not_exposed, spot, unit
 
 from pytpc.api.comparing_builds import compare_builds
+from pytpc.present.build_comparison import parameter_text
 from pytpc.static.build_changes import changes_between
 from pytpc.static.link_unit import LinkUnit
-from pytpc.static.parameter_changes import KINDS, DeclaredAs
+from pytpc.static.parameter_changes import KINDS, DeclaredAs, ParameterChange
 from pytpc.static.static_info import StaticInfo
 
 
@@ -207,3 +208,15 @@ def test_cfg_files_of_two_folders_are_compared(tmp_path: Path) -> None:
     assert found.places == ("cfg/Face.cfg:4",)
     # One folder has only the newer file.
     assert compare_builds(new, new).parameters == ()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "text"),
+    [
+        ("", "bool", "a .cfg file declares it only now: bool"),
+        ("bool", "", "a .cfg file declares it no more: bool"),
+        ("bool", "int", "declared otherwise: bool -> int"),
+    ],
+)
+def test_a_declaration_in_words(old: str, new: str, text: str) -> None:
+    assert parameter_text(ParameterChange("declared", "face", "rate", old, new)) == text
