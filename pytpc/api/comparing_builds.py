@@ -14,6 +14,7 @@ from pytpc.recording.declaration import Declared
 from pytpc.static.budget import edits_text
 from pytpc.static.build_changes import BuildChanges, ComparisonChange, Status, changes_between
 from pytpc.static.parameter_changes import DeclaredAs
+from pytpc.static.sources import changed_sources
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.declared import declared_in
 
@@ -28,7 +29,8 @@ def compare_builds(
     """Compare two builds: what is new, gone, changed or moved, and what became of the parameters.
 
     The ``.cfg`` files of the new build's sources say which parameters are declared. What they say
-    is compared with those of the old build if its sources are there, too, in another folder.
+    is compared with those of the old build if its sources are there, too, in another folder and as
+    they were.
 
     Args:
         old: static information, or where it is: a static.json, a build base or a workspace.
@@ -42,8 +44,8 @@ def compare_builds(
     before, after = load_static(old), load_static(new)
     declared = declared_in(after, on_skipped=on_skipped)
     # Both builds of a CI job may have been made in one folder: then its files are the new ones.
-    is_apart = _roots(before).isdisjoint(_roots(after))
-    there = _packaged(declared_in(before), before) if is_apart else []
+    is_known = _roots(before).isdisjoint(_roots(after)) and not changed_sources(before)
+    there = _packaged(declared_in(before), before) if is_known else []
     return changes_between(
         before,
         after,

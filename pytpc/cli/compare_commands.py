@@ -126,6 +126,8 @@ def compare_command(given: _CompareArguments) -> None:
         _compare_recordings(given)
         return
     _refuse(["--static"] if given.static_source is not None else [], "builds")
+    if given.as_json and given.markdown == "-":
+        raise click.UsageError("--json and --markdown - both print; give --markdown FILE")
     _compare_builds(given)
 
 

@@ -346,6 +346,7 @@ def test_options_that_do_not_go_together(both: tuple[str, str], tmp_path: Path) 
     assert "--sarif does not go with two recordings" in run(*words, status=2).stderr
     said = run(*both, "--static", both[0], status=2).stderr
     assert "--static does not go with two builds" in said
+    assert "both print" in run(*both, "--json", "--markdown", "-", status=2).stderr
 
 
 def test_a_missing_file_is_an_error(both: tuple[str, str], tmp_path: Path) -> None:

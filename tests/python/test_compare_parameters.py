@@ -208,6 +208,15 @@ def test_cfg_files_of_two_folders_are_compared(tmp_path: Path) -> None:
     assert found.places == ("cfg/Face.cfg:4",)
     # One folder has only the newer file.
     assert compare_builds(new, new).parameters == ()
+    # Nor is a folder that another version was checked out into the old build's.
+    there = build({**LIMIT, "default": None}, source_root=str(tmp_path / "old"),
+                  comparisons=[comparison(default=None)])  # fmt: skip
+    source = tmp_path / "old/src/detector.cpp"
+    source.parent.mkdir()
+    source.write_text("int other;\n")
+    assert "declared" not in [one.kind for one in compare_builds(there, new).parameters]
+    source.write_text("\n" * 39 + "if (coverage > min_coverage_limit_)\n")
+    assert "declared" in [one.kind for one in compare_builds(there, new).parameters]
 
 
 @pytest.mark.parametrize(
