@@ -80,7 +80,7 @@ def sarif_of_changes(
         static = old if one.new is None else new
         # To parse all sources takes minutes, and those of the older build may be gone.
         found = details(static, one.site.tpc, Answer(None, "only its line is known"))
-        text = edits_text(one)
+        text = edits_text(one) if one.status == "changed" else ""
         return Compared(found, _STATES[one.status], one.status, (text,) if text else ())
 
     return compared_log(new, old, map(compared, changes.comparisons), srcroot)

@@ -59,6 +59,7 @@ def _lines(found: BuildChanges, everything: bool) -> Iterator[Text]:
             yield Text(f"{_TITLES[status]} ({len(every):,})", style="bold")
         for one in every:
             yield from _comparison(one)
+    yield from _rerouted(found)
     if found.farther and everything:
         yield Text("")
         yield Text(f"Only another distance ({len(found.farther):,})", style="bold")
@@ -70,6 +71,25 @@ def _lines(found: BuildChanges, everything: bool) -> Iterator[Text]:
         for parameter in found.parameters:
             yield from _parameter(parameter)
     yield from _spots(found, everything)
+
+
+def _rerouted(found: BuildChanges) -> Iterator[Text]:
+    if not found.rerouted:
+        return
+    yield Text("")
+    yield Text("Unchanged, but what shows the outcome first is another topic", style="bold")
+    for line in rerouted_texts(found):
+        yield _line(" ", "", line)
+
+
+def rerouted_texts(found: BuildChanges) -> list[str]:
+    """For each pair of topics how many comparisons have them now, and their parameters."""
+    told = []
+    for edit, every in found.rerouted.items():
+        names = list(dict.fromkeys(one.site.threshold for one in every))
+        which = f"{many(len(every), 'comparison')} with {listed(names, _NAMED)}"
+        told.append(f"{edit.old} -> {edit.new}: {which}")
+    return told
 
 
 def _spots(found: BuildChanges, everything: bool) -> Iterator[Text]:
@@ -202,7 +222,9 @@ def build_changes_json(found: BuildChanges, judged: Sequence[Verdict] = ()) -> J
         "unanalysed": found.unanalysed,
         "notes": found.notes,
         "counts": dict(found.counts),
-        "comparisons": [_comparison_json(o) for o in found.comparisons if o.status != "same"],
+        "comparisons": [
+            _comparison_json(o) for o in found.comparisons if o.status != "same" or o.edits
+        ],
         "parameters": [
             {
                 "kind": one.kind,

@@ -13,6 +13,7 @@ from pytpc.base.wording import listed, many, plain
 from pytpc.present.build_comparison import (
     parameter_text,
     remarks_of,
+    rerouted_texts,
     spot_text,
     summary_of,
     warnings_of,
@@ -77,6 +78,8 @@ def _sections(found: BuildChanges) -> Iterator[tuple[str, list[str]]]:
     for status, title in _TITLES.items():
         every = found.of(status)
         yield f"{title}: {many(len(every), 'comparison')}", [_entry(one) for one in every]
+    topics = [f"- {code(text)}" for text in rerouted_texts(found)]
+    yield f"Shown first on another topic: {len(topics):,}", topics
     parameters = [
         f"- {code(one.parameter)} in {code(one.package)}: {code(parameter_text(one))}"
         for one in found.parameters

@@ -15,7 +15,7 @@ from typing import Literal
 
 from pytpc.base.wording import listed, many
 from pytpc.static.builds import program_name
-from pytpc.static.edits import Edit, edits_of
+from pytpc.static.edits import Edit, edits_of, topic_edit
 from pytpc.static.link_unit import BlindSpot, LinkUnit
 from pytpc.static.matching import Site, function_name, matched, sites_of
 from pytpc.static.parameter_changes import (
@@ -35,8 +35,9 @@ _NAMED = 4
 class ComparisonChange:
     """What became of one comparison in the source.
 
-    ``old`` is None of a new one, ``new`` of one that is gone. ``edits`` are those of a changed one.
-    A ``moved`` one says the same on another line, in another function or file. The ``missing``
+    ``old`` is None of a new one, ``new`` of one that is gone. ``edits`` are those of a changed one;
+    one that is not changed has at most another topic. A ``moved`` one says the same on another
+    line, in another function or file. The ``missing``
     link units of one that is gone are those that held it and that the new build does not have: if
     these are all, it may only not have been built. ``is_declared`` is about the parameter of a new
     or changed one.
@@ -120,11 +121,21 @@ class BuildChanges:
         return [o for o in self.comparisons if o.status in ("moved", "same") and o.distances]
 
     @property
+    def rerouted(self) -> Mapping[Edit, list[ComparisonChange]]:
+        """Those that are as they were, but whose outcome shows first on another topic."""
+        found: dict[Edit, list[ComparisonChange]] = {}
+        for one in self.comparisons:
+            if one.status in ("moved", "same"):
+                for edit in one.edits:
+                    found.setdefault(edit, []).append(one)
+        return found
+
+    @property
     def is_same(self) -> bool:
         """Whether nothing is to be said."""
         some = any(self.counts[status] for status in ("new", "gone", "changed"))
         units = self.missing or self.added or self.renamed or self.unanalysed
-        return not (some or units or self.parameters or self.spots)
+        return not (some or units or self.rerouted or self.parameters or self.spots)
 
 
 def changes_between(
@@ -269,10 +280,11 @@ def _declarer(static: StaticInfo, declared: Collection[str]) -> Callable[[Site],
 
 
 def _pair(old: Site, new: Site, is_declared: Callable[[Site], bool]) -> ComparisonChange:
-    edits = tuple(edits_of(old, new))
+    edits, topics = tuple(edits_of(old, new)), topic_edit(old, new)
     if edits:
+        edits = (*edits, *topics)
         return ComparisonChange("changed", old, new, edits, is_declared=is_declared(new))
-    return ComparisonChange("moved" if _has_moved(old, new) else "same", old, new)
+    return ComparisonChange("moved" if _has_moved(old, new) else "same", old, new, topics)
 
 
 def _has_moved(old: Site, new: Site) -> bool:

@@ -28,7 +28,7 @@ class Edit:
 
 
 def edits_of(old: Site, new: Site) -> Iterator[Edit]:
-    """What differs between two versions of a comparison, but for its place and distance."""
+    """What differs between two versions of a comparison, but for its place and what exposes it."""
     if old.threshold != new.threshold:
         yield Edit("parameter", old.threshold, new.threshold)
     if old.tpc.relation == new.tpc.relation:
@@ -42,9 +42,17 @@ def edits_of(old: Site, new: Site) -> Iterator[Edit]:
         yield Edit("arithmetic", *told)
     if list(map(repr, old.defaults)) != list(map(repr, new.defaults)):
         yield Edit("default", shown_defaults(old.defaults), shown_defaults(new.defaults))
-    if old.topics != new.topics:
-        told = [listed(one.topics, _NAMED) or "unknown" for one in (old, new)]
-        yield Edit("topic", *told)
+
+
+def topic_edit(old: Site, new: Site) -> tuple[Edit, ...]:
+    """The topics on which the outcome shows first, if they differ.
+
+    By itself that is no edit: a publish that somebody adds elsewhere may be nearer.
+    """
+    if old.topics == new.topics:
+        return ()
+    told = [listed(one.topics, _NAMED) or "unknown" for one in (old, new)]
+    return (Edit("topic", *told),)
 
 
 def _relation_edit(old: Site, new: Site) -> Edit:

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from static_units import comparison, failed_unit, spot, unit
 
+from pytpc.present.build_comparison import rerouted_texts
 from pytpc.static.build_changes import BuildChanges, ComparisonChange, changes_between
 from pytpc.static.compared_text import is_negated, sides, without_space
 from pytpc.static.link_unit import LinkUnit
@@ -70,6 +71,15 @@ def test_what_says_the_same_is_no_change(what: dict[str, Any], status: str) -> N
 def test_another_distance_is_a_note() -> None:
     found = changes_between(of(comparison()), of(comparison(distance=7)))
     assert [one.distances for one in found.farther] == [(1, 7)]
+
+
+# A publish that was added elsewhere is nearer now: nobody edited the comparison.
+def test_another_topic_alone_is_no_change_and_told_once() -> None:
+    two = [comparison(), comparison(lineno=60, source="rate")]
+    found = changes_between(of(*two), of(*({**one, "topic": "/new"} for one in two)))
+    assert [one.status for one in found.comparisons] == ["same", "same"]
+    assert rerouted_texts(found) == ["capture -> /new: 2 comparisons with min_coverage_limit, rate"]
+    assert not found.is_same
 
 
 def test_a_renamed_link_unit_holds_the_same_comparisons() -> None:
@@ -158,8 +168,7 @@ def test_the_edited_one_of_two_is_found_by_its_text() -> None:
         ),
         ({"default": 0.3}, "default: 0.25 -> 0.3"),
         ({"default": None}, "default: 0.25 -> none"),
-        ({"topic": "/photo"}, "topic: capture -> /photo"),
-        ({"topic": None}, "topic: capture -> unknown"),
+        ({"default": 0.3, "topic": None}, "default: 0.25 -> 0.3; topic: capture -> unknown"),
         ({"source": "max_coverage_limit"}, "parameter: min_coverage_limit -> max_coverage_limit"),
         (
             {
