@@ -69,7 +69,7 @@ def _head(found: BuildChanges, judged: Sequence[Verdict]) -> Iterator[str]:
         yield f"**{many(len(broken), 'rule')} broken:**"
         yield ""
         for one in broken:
-            names = listed([each.name for each in one.findings], _NAMED)
+            names = listed(list(dict.fromkeys(each.name for each in one.findings)), _NAMED)
             yield f"- {one.rule}, {len(one.findings):,} found: {code(names)}"
     yield ""
 
