@@ -12,6 +12,8 @@ tables, and are tables in a notebook (with all texts from the robot escaped).
 ``what_if``                what a value would have changed (a replay)
 ``margins``                how near each comparison came to turning
 ``write_report``           a page with the answers and the evidence
+``compare_builds``         what a change of the code does to the comparisons
+``compare_decisions``      what two recordings decided differently
 ``build``, ``analyse``,    static information
 ``collect``
 ``record_launch``,         a mission
@@ -33,6 +35,8 @@ _PLACES = {
     "missions": ("convert", "load_static", "read"),
     "diagnosing": ("Rankings", "curves", "diagnose", "rank"),
     "measuring": ("margins",),
+    "comparing_builds": ("compare_builds",),
+    "comparing_decisions": ("compare_decisions",),
     "suggesting": ("suggest", "what_if"),
     "report": ("write_report",),
     "building": ("BuildOptions", "analyse", "build", "collect"),

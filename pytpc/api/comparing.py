@@ -19,11 +19,13 @@ from pytpc.api.missions import (
 )
 from pytpc.api.static_of_mission import recorded_static
 from pytpc.base.errors import InputError, TpcError
+from pytpc.base.paths import MERGED_FILE, OWN_FOLDER
 from pytpc.base.regular_files import has_same_content
 from pytpc.diagnosis.differences import RunValues, changes_of, differences
 from pytpc.diagnosis.full_names import with_keys_of
 from pytpc.diagnosis.question import WINDOW_S, Question
 from pytpc.diagnosis.results.differences import RunDifferences
+from pytpc.ingest.reading import holds_mission
 from pytpc.recording.events import Events
 from pytpc.recording.mission import Recording
 from pytpc.recording.parameter_values import ParameterValues
@@ -36,6 +38,8 @@ from pytpc.static.parameters import base_key
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.origins import PARAMS_FILE, read_origins
 from pytpc.values.recording import is_of_ros, params_file, read_parameters
+
+_FIRST = 64
 
 
 @dataclass(frozen=True)
@@ -133,6 +137,17 @@ def _names_in(static_info: StaticInfo, other: Path) -> Mapping[str, str]:
     except (OSError, TpcError):
         return {}
     return known[digest]
+
+
+def is_recording(source: Path) -> bool:
+    """Whether a file or folder is a recording, and not a build or its static information."""
+    if source.is_dir():
+        return not (source / OWN_FOLDER / MERGED_FILE).is_file() and holds_mission(source)
+    try:
+        with source.open("rb") as stream:
+            return not stream.read(_FIRST).lstrip().startswith(b"{")
+    except OSError:
+        return False
 
 
 Run = RecordedRun | Recording | Source

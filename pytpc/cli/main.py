@@ -55,6 +55,7 @@ _GROUPED = {
         "explain": ("explain_commands", "Show how a parameter reaches what the robot exposes."),
         "coverage": ("explain_commands", "Show what became of each parameter that is read."),
         "blind-spots": ("explain_commands", "List the places that the analysis cannot see past."),
+        "compare": ("compare_commands", "Show what differs between two builds or recordings."),
         "export": ("static_commands", "Write the comparisons as SARIF or as an HTML page."),
         "analyse": ("python_commands", "Find the comparisons of Python nodes."),
         "collect": ("static_commands", "Merge the static information of link units into one file."),

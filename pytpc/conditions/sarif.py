@@ -6,11 +6,12 @@ Each TPC is a note: nothing is wrong with it, but a reviewer should know that a 
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path, PurePosixPath
-from typing import Any
+from typing import Any, Literal
 from urllib.parse import quote
 
 from pytpc.base.source_bytes import source_bytes
@@ -48,6 +49,19 @@ _RULES = {
         " that stands in the source.",
     ),
 }
+State = Literal["new", "unchanged", "updated", "absent"]
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """A TPC of one of two builds: its baseline state, what became of it, and what changed."""
+
+    details: Details
+    state: State
+    status: str
+    changes: tuple[str, ...] = ()
+
+
 # The steps that are shown of a folded path.
 _ESSENTIAL = frozenset({"read", "compare", "expose"})
 
@@ -63,10 +77,39 @@ def sarif_log(
         srcroot: folder that paths are relative to; by default what the folders of all packages have
             in common. Files elsewhere have absolute URIs.
     """
-    roots = [unit.source_root for unit in static.units]
-    root = os.path.normpath(srcroot.absolute()) if srcroot is not None else _common(roots)
-    places = _Places(root, dict(static.copies))
-    kinds = list(_RULES)
+    places = _Places(_root(static, srcroot), dict(static.copies))
+    return _log(static.troubles, places, [_result(each, places) for each in found])
+
+
+def compared_log(
+    new: StaticInfo,
+    old: StaticInfo,
+    found: Iterable[Compared],
+    srcroot: Path | None = None,
+) -> dict[str, Any]:
+    """A SARIF log of a newer build, in which each result says how it was in an older one.
+
+    Args:
+        new: the newer build; its failed link units become notifications.
+        old: the older one.
+        found: the results, in this order; those that are gone, too.
+        srcroot: folder that paths are relative to; by default as in ``sarif_log``. Files of the
+            older build are at the same relative paths.
+    """
+    root = _root(new, srcroot)
+    here, there = _Places(root, dict(new.copies)), _Places(_same_root(old, new, root), {})
+    results = []
+    for each in found:
+        result = _result(each.details, there if each.state == "absent" else here)
+        result["baselineState"] = each.state
+        result["properties"] |= {"status": each.status, "changes": list(each.changes)}
+        if each.changes:
+            result["message"]["text"] += f" Changed: {'; '.join(each.changes)}."
+        results.append(result)
+    return _log(new.troubles, here, results)
+
+
+def _log(troubles: Iterable[str], places: _Places, results: list[dict[str, Any]]) -> dict[str, Any]:
     return {
         "$schema": SCHEMA,
         "version": "2.1.0",
@@ -76,21 +119,41 @@ def sarif_log(
                 "invocations": [
                     {
                         "executionSuccessful": True,
-                        "toolExecutionNotifications": [_warning(text) for text in static.troubles],
+                        "toolExecutionNotifications": [_warning(text) for text in troubles],
                     }
                 ],
-                "originalUriBaseIds": {_ROOT: {"uri": _uri(root.rstrip("/") + "/")}},
+                "originalUriBaseIds": {_ROOT: {"uri": _uri(places.root.rstrip("/") + "/")}},
                 "columnKind": "unicodeCodePoints",
-                "results": [_result(each, kinds.index(each.tpc.type), places) for each in found],
+                "results": results,
             }
         ],
     }
+
+
+def _root(static: StaticInfo, srcroot: Path | None) -> str:
+    if srcroot is not None:
+        return os.path.normpath(srcroot.absolute())
+    return _common([unit.source_root for unit in static.units])
+
+
+def _same_root(old: StaticInfo, new: StaticInfo, root: str) -> str:
+    """The folder of an older build that stands for ``root`` of the newer one."""
+    theirs = {unit.package: unit.source_root.rstrip("/") for unit in old.units}
+    for unit in new.units:
+        below = os.path.relpath(unit.source_root, root)
+        folder = theirs.get(unit.package, "")
+        if folder and below == ".":
+            return folder
+        if folder.endswith(f"/{below}"):
+            return folder.removesuffix(f"/{below}") or "/"
+    return _root(old, None)
 
 
 class _Places:
     """Places in files as SARIF has them."""
 
     def __init__(self, root: str, copies: Mapping[str, str]) -> None:
+        self.root = root
         self._root = PurePosixPath(root)
         self._copies = copies
         self._lines = lru_cache(maxsize=256)(_read_lines)
@@ -146,7 +209,7 @@ def _driver() -> dict[str, Any]:
     }
 
 
-def _result(each: Details, rule: int, places: _Places) -> dict[str, Any]:
+def _result(each: Details, places: _Places) -> dict[str, Any]:
     tpc, nearest = each.tpc, each.nearest
     location: dict[str, Any] = {
         "physicalLocation": places.location(tpc.file, tpc.lineno, tpc.column, nearest.source_code),
@@ -166,7 +229,7 @@ def _result(each: Details, rule: int, places: _Places) -> dict[str, Any]:
         }
     result: dict[str, Any] = {
         "ruleId": f"tpc/{tpc.type}",
-        "ruleIndex": rule,
+        "ruleIndex": list(_RULES).index(tpc.type),
         "level": "note",
         "message": {"text": _message(each)},
         "locations": [location],

@@ -189,14 +189,14 @@ def sources(path: Path) -> list[Path]:
 
 def _to_give(folder: Path, entries: Sequence[Path]) -> str:
     """What to give instead of a folder without recordings: those in its folders, if it has any."""
-    below = [plain(str(folder / one.name)) for one in entries[:_MOST_BELOW] if _holds_mission(one)]
+    below = [plain(str(folder / one.name)) for one in entries[:_MOST_BELOW] if holds_mission(one)]
     if not below:
         return "give a bag, or a folder that `pytpc record` wrote"
     which = "give the one below it" if len(below) == 1 else f"give one of the {len(below)} below it"
     return f"{which}: {listed(below, _LISTED)}"
 
 
-def _holds_mission(folder: Path) -> bool:
+def holds_mission(folder: Path) -> bool:
     """Whether a folder is a recorded mission; logs and tables alone may be of anything."""
     try:
         if is_converted(folder) or is_ros2_folder(folder) or (folder / RUN_FILE).is_file():

@@ -37,15 +37,16 @@ def finite(value: Number | None) -> Number | None:
 
 def fields_json(found: Suggestion | WhatIf | Declared) -> Json:
     """All fields, those of what is inside, too; a number that JSON lacks is null."""
-    return {name: _without_nan(value) for name, value in asdict(found).items()}
+    return {name: without_nan(value) for name, value in asdict(found).items()}
 
 
-def _without_nan(value: object) -> object:
+def without_nan(value: object) -> object:
+    """A value whose numbers, also those inside, are null where JSON lacks them."""
     if isinstance(value, float):
         return finite(value)
     if isinstance(value, dict):
-        return {name: _without_nan(one) for name, one in value.items()}
-    return [_without_nan(one) for one in value] if isinstance(value, list | tuple) else value
+        return {name: without_nan(one) for name, one in value.items()}
+    return [without_nan(one) for one in value] if isinstance(value, list | tuple) else value
 
 
 def remedy_json(found: Remedy) -> Json:
@@ -194,7 +195,7 @@ def differences_json(found: RunDifferences) -> Json:
 
 def _difference(found: Difference) -> Json:
     def value(one: SetValue) -> Json:
-        return {"value": _without_nan(one.value), "place": one.place}
+        return {"value": without_nan(one.value), "place": one.place}
 
     return {
         "parameter": found.parameter,

@@ -21,7 +21,7 @@ import numpy as np
 from pytpc.base.columns import Floats, Int64s
 from pytpc.base.wording import many
 from pytpc.diagnosis.scores.summary_scores import covered
-from pytpc.recording.events import Events
+from pytpc.diagnosis.scores.summary_truth import true_in
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summaries
 from pytpc.static.parameters import base_key, parameter_name
@@ -234,7 +234,7 @@ def _counts(recording: Recording, keys: _Keys) -> _Counts:
             own = events.by_key.rows(code)
             kept[own[covered(events, own, summaries, rows)]] = False
             by_key[code] += summaries.count[rows].sum()
-            true[keys.parameter[code]] += _true_in(events, own, summaries, rows)
+            true[keys.parameter[code]] += true_in(events, own, summaries, rows)
             ends = np.stack([summaries.begin_ns[rows], summaries.end_ns[rows]])
             spans.append((keys.parameter[code], ends.min(axis=0), ends.max(axis=0)))
     of_parameter = keys.parameter[events.key]
@@ -275,34 +275,6 @@ def _seconds(
 def _bins(recording: Recording) -> int:
     """The seconds of a mission, a begun one counted as one."""
     return max(1, math.ceil((recording.end_ns - recording.start_ns) / 10**9))
-
-
-def _true_in(events: Events, own: Int64s, summaries: Summaries, rows: Int64s) -> float:
-    """How many evaluations in the summaries ``rows`` of one key came out true."""
-    steady = rows[summaries.flops[rows] == 0]
-    total = float(summaries.count[steady[summaries.result[steady]]].sum())
-    for row in rows[summaries.flops[rows] > 0].tolist():
-        node = summaries.nodes[summaries.node[row]]
-        code = events.nodes.index(node) if node in events.nodes else -1
-        mine = own[events.node[own] == code]
-        share = _share_true(events, mine, summaries, row)
-        total += share * float(summaries.count[row])
-    return total
-
-
-def _share_true(events: Events, mine: Int64s, summaries: Summaries, row: int) -> float:
-    """The share of a summary's time in which its predicate was true.
-
-    Between the evaluations that are known, all of which flops are, the outcome stays.
-    """
-    begin, end = sorted((int(summaries.begin_ns[row]), int(summaries.end_ns[row])))
-    times = events.time_ns[mine]
-    inside = mine[(times > begin) & (times <= end) & events.flop[mine]]
-    if not inside.size or end == begin:
-        return float(summaries.result[row])
-    edges = np.concatenate([[begin], events.time_ns[inside], [end]])
-    outcome = np.concatenate([[not events.result[inside[0]]], events.result[inside]])
-    return float(np.diff(edges)[outcome].sum() / (end - begin))
 
 
 def _rows_of(summaries: Summaries, key: str) -> Int64s:
