@@ -158,8 +158,8 @@ def export_command(
     outputs = given.viewers.outputs
     if not is_of_static and not outputs:
         raise click.UsageError(
-            "give --sarif FILE or --html FILE for static information, or for a recording --mcap,"
-            " --foxglove, --plotjuggler, --rerun, --csv or --parquet"
+            "give --sarif FILE, --html FILE or both; for a recording --mcap, --foxglove,"
+            " --plotjuggler, --rerun, --csv or --parquet"
         )
     if is_of_static and outputs:
         raise click.UsageError(
