@@ -63,16 +63,7 @@ class ExportSeries:
         comparisons = [known[key] for key, _ in order]
         rules = MarginRules.of(comparisons)
         series = [
-            ComparisonSeries(
-                topic=names.take("tpc", node, _parameter_part(one, node), _place_part(one)),
-                node=node,
-                parameter=parameter_name(one),
-                key=key,
-                place=f"{one.file}:{one.lineno}",
-                relation=one.relation,
-                source_code=(one.source_code or "")[:_LONGEST_CODE],
-                is_in_parameters=is_in_parameters,
-            )
+            series_of(key, node, one, names, is_in_parameters=is_in_parameters)
             for (key, node), one, is_in_parameters in zip(
                 order, comparisons, rules.in_parameters, strict=True
             )
@@ -87,6 +78,23 @@ class ExportSeries:
     def of_key(self, key: str | None) -> tuple[int, ...]:
         """The series of a comparison, in all nodes."""
         return tuple(number for pair, number in self.numbers.items() if pair[0] == key)
+
+
+def series_of(
+    key: str, node: str, comparison: Comparison, names: LegalNames, *, is_in_parameters: bool
+) -> ComparisonSeries:
+    """Name a comparison in a node; ``is_in_parameters`` is the unit of its margin."""
+    parameter = _parameter_part(comparison, node)
+    return ComparisonSeries(
+        topic=names.take("tpc", node, parameter, _place_part(comparison)),
+        node=node,
+        parameter=parameter_name(comparison),
+        key=key,
+        place=f"{comparison.file}:{comparison.lineno}",
+        relation=comparison.relation,
+        source_code=(comparison.source_code or "")[:_LONGEST_CODE],
+        is_in_parameters=is_in_parameters,
+    )
 
 
 def _numbers_of(table: Events | Summaries, numbers: dict[SeriesKey, int]) -> Int32s:

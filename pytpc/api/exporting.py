@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -64,8 +64,8 @@ def export_of(
     first = _first_series(found, suspects, ranks)
     log = sorted(
         [
-            *map(_mark_line, recording.marks),
-            *map(_verdict_line, suspects),
+            *map(mark_line, recording.marks),
+            *map(verdict_line, suspects),
             *_turns(recording, found, first),
         ]
     )
@@ -116,14 +116,25 @@ def _judged(
         past = recording.marks[:count]
         run = replace(asked.run, recording=replace(recording, marks=past))
         so_far = replace(asked, run=run) if count < total else asked
-        yield _suspects_at(past[-1], int(count), so_far.diagnosis, found)
+        yield suspects_at(past[-1], int(count), so_far.diagnosis, found.of_key)
         if on_progress is not None:
             on_progress(done, len(chosen))
 
 
-def _suspects_at(
-    mark: Mark, number: int, diagnosis: Diagnosis, found: ExportSeries
+def suspects_at(
+    mark: Mark,
+    number: int,
+    diagnosis: Diagnosis,
+    of_key: Callable[[str | None], tuple[int, ...]],
 ) -> ExportedSuspects:
+    """What is shown of a diagnosis.
+
+    Args:
+        mark: the last one that counts.
+        number: of that mark, from 1.
+        diagnosis: by all marks up to it.
+        of_key: the numbers of a comparison's series.
+    """
     to_try = {
         one.accused.parameter: show(one.remedy.value)
         for one in diagnosis.advice
@@ -138,7 +149,7 @@ def _suspects_at(
             one.place,
             one.key or "",
             to_try.get(one.parameter, ""),
-            found.of_key(one.key),
+            of_key(one.key),
         )
         for one in diagnosis.blame.suspects
     )
@@ -177,13 +188,15 @@ def _range_of(recording: Recording, key: str) -> tuple[float, float]:
     return (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
 
 
-def _mark_line(mark: Mark) -> ExportedLine:
+def mark_line(mark: Mark) -> ExportedLine:
+    """A mark as a line of the log."""
     kind = f"type {mark.type}" if mark.type else "without a type"
     note = f": {mark.note}" if mark.note else ""
     return ExportedLine(mark.time_ns, "mark", mark.observer or "observer", f"mark {kind}{note}")
 
 
-def _verdict_line(found: ExportedSuspects) -> ExportedLine:
+def verdict_line(found: ExportedSuspects) -> ExportedLine:
+    """A verdict as a line of the log."""
     action = f"; {found.action}" if found.action else ""
     return ExportedLine(found.time_ns, "verdict", "suspects", f"{found.text}{action}")
 
