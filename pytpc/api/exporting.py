@@ -30,7 +30,7 @@ from pytpc.recording.mission import Recording
 PERIOD_S = 1.0
 """How often the ranks of all parameters are exported, in seconds."""
 
-_FIRST = 4
+_FIRST = 3
 _MOST_JUDGED = 50
 _MOST_TURNS = 5000
 

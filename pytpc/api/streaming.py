@@ -33,7 +33,7 @@ from pytpc.ros.node_status import NodeStatus
 _RANK_S = 1.0
 _LAYOUT_S = 10.0
 _SETTINGS_S = 15.0
-_SHOWN = 4
+_SHOWN = 3
 _RANKED = 10
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -30,6 +30,7 @@ TIME_LINE = "robot"
 _APPLICATION = "tpc"
 _PART = 1 << 18
 _LISTED = 10
+_SHOWN = 5
 # A clock that is below this many ns is a simulator's: it counts from its own start.
 _SIMULATED = 10**9 * 86400 * 365
 _RED, _BLUE = 0xD62728FF, 0x1F77B4FF
@@ -64,9 +65,11 @@ def write_rerun(found: MissionExport, path: Path, on_progress: Progress | None =
     """
     rr = rerun_sdk()
     shown = [found.series[number] for number in found.first]
+    likely = [] if not found.suspects else found.suspects[-1].suspects[:_SHOWN]
+    probable = [found.probability_topics[one.parameter] for one in likely]
     with replacing(path) as staged:
         viewer = RerunViewer(rr, found.end_ns)
-        viewer.stream.save(staged, default_blueprint=blueprint(rr, shown))
+        viewer.stream.save(staged, default_blueprint=blueprint(rr, shown, probable))
         viewer.stream.send_recording_name(plain(found.name))
         viewer.describe(found.series)
         _write(viewer, found, on_progress)
@@ -190,23 +193,41 @@ class RerunViewer:
         return column(TIME_LINE, timestamp=times.astype("datetime64[ns]"))
 
 
-class _Plot(NamedTuple):
-    name: str
-    contents: list[str]
+def blueprint(
+    rr: Any,  # noqa: ANN401
+    shown: Sequence[ComparisonSeries],
+    probabilities: Sequence[str] = (),
+) -> Any:  # noqa: ANN401
+    """What the viewer shows first.
 
-
-def blueprint(rr: Any, shown: Sequence[ComparisonSeries]) -> Any:  # noqa: ANN401
-    """What the viewer shows first: the given comparisons, their results, log and suspects."""
+    Args:
+        rr: the module.
+        shown: the comparisons to show, with their results.
+        probabilities: topics of the probabilities to show; empty: all.
+    """
     rrb = rr.blueprint
-    plots = [
-        _Plot(title_of(one), [f"/{path_of(one.topic)}/{part}" for part in ("value", "threshold")])
+    axis = rrb.TimeAxis(link="LinkToGlobal")
+    left = [
+        rrb.TimeSeriesView(
+            origin="/",
+            contents=[f"/{path_of(one.topic)}/{part}" for part in ("value", "threshold")],
+            name=title_of(one),
+            axis_x=axis,
+        )
         for one in shown
     ]
-    left = [rrb.TimeSeriesView(origin="/", contents=one.contents, name=one.name) for one in plots]
-    results = [f"/{path_of(one.topic)}/result" for one in shown]
     right = [
-        rrb.TimeSeriesView(origin="/probabilities", name="Probability after each mark"),
-        rrb.StateTimelineView(origin="/", contents=results, name="Results"),
+        rrb.TimeSeriesView(
+            origin="/probabilities",
+            contents=[f"/{path_of(topic)}" for topic in probabilities] or "$origin/**",
+            name="Probability after each mark",
+            axis_x=axis,
+        ),
+        rrb.StateTimelineView(
+            origin="/",
+            contents=[f"/{path_of(one.topic)}/result" for one in shown],
+            name="Results",
+        ),
         rrb.TextDocumentView(origin="/suspects", name="Suspects"),
         rrb.TextLogView(origin="/log", name="Marks, verdicts and turns"),
     ]
