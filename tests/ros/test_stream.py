@@ -12,9 +12,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from test_watch import Node, environment, report
+from test_watch import Node, comparison, environment, report, static_info
 
-from mission_samples import comparison, static_info
 from patience import PATIENCE_S
 from pytpc.ros.ros1.graph import RosGraph
 from pytpc.ros.ros1.master import Master
@@ -86,9 +85,9 @@ def stream(graph: RosGraph, static: Path) -> Iterator[subprocess.Popen[str]]:
         stderr=subprocess.PIPE,
         text=True,
     )
-    yield process
-    process.kill()
-    process.wait()
+    with process:
+        yield process
+        process.kill()
 
 
 def test_rospy_hears_of_nodes_drops_and_the_first_suspect(
@@ -124,7 +123,9 @@ def test_rospy_hears_of_nodes_drops_and_the_first_suspect(
             assert time.monotonic() < until
             time.sleep(0.1)
         marks.publish("/marks0/mark_action", encode_time(time.time_ns()))
-        found = dashboard.wait_for(lambda found: "first suspect" in found["tpc: suspects"]["values"])
+        found = dashboard.wait_for(
+            lambda found: "first suspect" in found["tpc: suspects"]["values"]
+        )
     finally:
         marks.close()
         node.publisher.close()
