@@ -119,6 +119,8 @@ def stream_command(given: _StreamArguments) -> None:
         while not stream.is_over() and (until_s is None or time.monotonic() < until_s):
             time.sleep(_TURN_S)
             stream.tick()
+        # What came in the last moment of a recording.
+        stream.tick()
 
 
 class _Opened:
