@@ -106,6 +106,10 @@ class GraphFeed:
         """How many messages never arrived, by their sequence numbers."""
         return self._reports.lost
 
+    def dropped(self) -> dict[tuple[str, str], int]:
+        """How many reports processes dropped since this began, by node and why."""
+        return dict(self._reports.dropped)
+
     def close(self) -> None:
         """Leave the graph."""
         self._ended.set()

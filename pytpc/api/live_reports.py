@@ -70,6 +70,8 @@ class Reports:
         # The nodes of keys, by key and the node that the process is named after.
         self._nodes: dict[tuple[str, str], str] = {}
         self.malformed = 0
+        self.dropped: Counter[tuple[str, str]] = Counter()
+        """How many reports processes dropped, by the node that a process is named after and why."""
 
     @property
     def lost(self) -> int:
@@ -185,6 +187,8 @@ class Reports:
     def _item(self, other: Other, node: str) -> Item | None:
         """What the ranking takes of a line that is no report."""
         self._learn(other, node)
+        if isinstance(other, Drop):
+            self.dropped[node, other.why] += other.count
         if isinstance(other, Named):
             return None if other.node else ReadName(other.key, node, other.name, other.object)
         return self._placed(other) if isinstance(other, Summary) else None

@@ -11,8 +11,8 @@ from typing import cast
 
 from pytpc.api.missions import Source, load_static, read_named, with_names_of
 from pytpc.base.wording import percent
-from pytpc.diagnosis.margins import behaviours, over_missions
-from pytpc.diagnosis.results.margins import Behaviour, OverMissions
+from pytpc.diagnosis.behaviour import behaviours, over_missions
+from pytpc.diagnosis.results.behaviour import Behaviour, OverMissions
 from pytpc.diagnosis.results.turn_groups import TurnGroup
 from pytpc.diagnosis.turn_groups import groups_of
 from pytpc.present.answers import NotebookTable, TableSequence

@@ -30,6 +30,16 @@ def plain(text: str) -> str:
     return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
 
 
+def utf8_text(text: str) -> str:
+    r"""``text`` as any file format can hold it: without halves of surrogate pairs and zero bytes.
+
+    >>> utf8_text("caf\u00e9 \ud800\0") == "caf\u00e9 ?\ufffd"
+    True
+    """
+    whole = text.encode("utf-8", "replace").decode()
+    return whole.replace("\0", "\N{REPLACEMENT CHARACTER}")
+
+
 def plain_json(document: object, *, indent: int | None = 1) -> str:
     r"""A document as JSON in printable ASCII.
 

@@ -17,8 +17,8 @@ from pytpc.cli.arguments import JSON, PATH, as_object
 from pytpc.cli.console import console, print_json, progress
 from pytpc.cli.options import STATIC, check, recording_of
 from pytpc.cli.sources import static_for
-from pytpc.diagnosis.margins import by_nearest
-from pytpc.diagnosis.results.margins import Behaviour
+from pytpc.diagnosis.behaviour import by_nearest
+from pytpc.diagnosis.results.behaviour import Behaviour
 from pytpc.present.as_json import turn_group_json
 from pytpc.present.margin_tables import (
     behaviour_json,

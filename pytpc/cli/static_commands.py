@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import click
+from click.core import ParameterSource
 from rich.console import Console, Group, RenderableType
 from rich.padding import Padding
 from rich.table import Table
@@ -34,6 +35,7 @@ from pytpc.cli.console import (
     warn_of_failed,
 )
 from pytpc.cli.explain_commands import print_why_not
+from pytpc.cli.export_mission import VIEWERS, Viewers, export_mission, is_recording
 from pytpc.cli.selecting import SELECTING, place_of
 from pytpc.cli.sources import (
     SOURCES,
@@ -124,6 +126,7 @@ class _ExportArguments:
     title: str
     srcroot: Path | None
     wanted: Selection
+    viewers: Viewers
 
 
 @click.command("export")
@@ -141,13 +144,37 @@ class _ExportArguments:
     help="Folder that SARIF's paths are relative to. [default: what all packages share]",
 )
 @SELECTING
+@VIEWERS
 @as_object(_ExportArguments)
 def export_command(
     given: _ExportArguments,
 ) -> None:
-    """Write the comparisons in SOURCE as SARIF or as an HTML page."""
-    if given.sarif is None and given.html is None:
-        raise click.UsageError("give --sarif FILE, --html FILE or both")
+    """Write the comparisons in SOURCE as SARIF or HTML, or a recording for other viewers.
+
+    SOURCE is as for `list`, or one recording: a folder of `record`, a bag, or whatever else
+    `convert` takes. Several outputs may be written at once.
+    """
+    is_of_static = given.sarif is not None or given.html is not None
+    outputs = given.viewers.outputs
+    if not is_of_static and not outputs:
+        raise click.UsageError(
+            "give --sarif FILE, --html FILE or both; for a recording --mcap, --foxglove,"
+            " --plotjuggler, --rerun, --csv or --parquet"
+        )
+    if is_of_static and outputs:
+        raise click.UsageError(
+            f"--sarif and --html are for static information, {next(iter(outputs))} is for a"
+            " recording: give them one after the other"
+        )
+    _refuse_given(_OF_STATIC if outputs else _OF_RECORDINGS, is_of_static=is_of_static)
+    if outputs:
+        export_mission(given.sources, given.viewers)
+        return
+    for source in filter(is_recording, given.sources):
+        raise click.UsageError(
+            f"{source} is a recording, for --mcap, --foxglove, --plotjuggler, --rerun, --csv and"
+            " --parquet; --sarif and --html need static information, such as its static.json"
+        )
     static = static_of(given.sources)
     found = _details(static, select(static, given.wanted))
     if given.sarif is not None:
@@ -157,6 +184,40 @@ def export_command(
         write_catalogue(given.html, static, found, given.title)
         click.echo(f"{many(len(found), 'comparison')}: {given.html}")
     warn_of_failed(static)
+
+
+_OF_STATIC = {
+    "title": "--title",
+    "srcroot": "--srcroot",
+    "packages": "--package",
+    "parameters": "--parameter",
+    "types": "--type",
+    "files": "--file",
+    "constants": "--constants",
+    "processes": "--process",
+}
+_OF_RECORDINGS = {
+    "static_source": "--static",
+    "marks_files": "--marks",
+    "references": "--reference",
+    "period_s": "--period",
+    "as_json": "--json",
+}
+
+
+def _refuse_given(options: Mapping[str, str], *, is_of_static: bool) -> None:
+    """Refuse options that the other kind of SOURCE has.
+
+    Raises:
+        UsageError: one of them is given.
+    """
+    context = click.get_current_context()
+    for name, option in options.items():
+        if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
+            ours, theirs = "static information", "recordings"
+            if not is_of_static:
+                ours, theirs = theirs, ours
+            raise click.UsageError(f"{option} is for {theirs}; this export is of {ours}")
 
 
 COMMANDS: list[click.Command] = [collect_command, show_command, export_command]

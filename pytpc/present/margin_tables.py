@@ -11,7 +11,7 @@ from rich.padding import Padding
 from rich.text import Text
 
 from pytpc.base.wording import many, percent, plain
-from pytpc.diagnosis.results.margins import Behaviour, OverMissions
+from pytpc.diagnosis.results.behaviour import Behaviour, OverMissions
 from pytpc.diagnosis.results.turn_groups import TurnGroup
 from pytpc.present.as_json import Json, finite
 from pytpc.present.listing import Heading, Listing

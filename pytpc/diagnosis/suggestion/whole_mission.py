@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from pytpc.base.wording import many, show
-from pytpc.diagnosis.margins import behaviours, by_nearest
+from pytpc.diagnosis.behaviour import behaviours, by_nearest
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.results.advice import Advice, RankCurves, Remedy, Suggestion
 from pytpc.diagnosis.results.diagnosis import Diagnosis

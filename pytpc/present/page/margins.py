@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pytpc.base.wording import percent
-from pytpc.diagnosis.results.margins import Behaviour
+from pytpc.diagnosis.results.behaviour import Behaviour
 from pytpc.diagnosis.results.mission_answer import MissionAnswer
 from pytpc.present.margin_tables import group_text, short
 

@@ -20,10 +20,11 @@ import numpy as np
 from pytpc.base.columns import Bools, Floats, Int64s
 from pytpc.diagnosis.ranking.result_streams import ResultStream, ResultStreams
 from pytpc.diagnosis.ranking.summarised import with_summarised
-from pytpc.diagnosis.results.margins import Behaviour, Distribution, Drift, OverMissions
+from pytpc.diagnosis.results.behaviour import Behaviour, Distribution, Drift, OverMissions
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.diagnosis.scores.summary_scores import covered
-from pytpc.diagnosis.thresholds.units import added_by, is_text
+from pytpc.diagnosis.thresholds.margins import slope_of
+from pytpc.diagnosis.thresholds.units import is_text
 from pytpc.diagnosis.trend import trend_of
 from pytpc.recording.events import Events
 from pytpc.recording.mission import Recording
@@ -123,10 +124,11 @@ def _behaviour(
     evaluations, turns = _counted(recording, key, stream.node)
     comparison = static_info.comparisons[key]
     seconds = float(stream.weight.sum())
-    scale = _scale(comparison)
+    slope = slope_of(comparison)
+    scale = 1.0 if slope is None else abs(slope)
     measured = _measured(stream, comparison, static_info)
-    margin = stream.margin / (scale or 1.0)
-    reach = stream.spread / (scale or 1.0)
+    margin = stream.margin / scale
+    reach = stream.spread / scale
     near = margin <= NEAR * reach
     return Behaviour(
         key=key,
@@ -136,7 +138,7 @@ def _behaviour(
         evaluations=evaluations,
         seconds=seconds,
         margins=_distribution(margin, stream.weight) if measured else None,
-        unit="value" if scale is None else "parameter",
+        unit="value" if slope is None else "parameter",
         reach=reach,
         true_share=_share(stream.res, stream.weight),
         turns=turns,
@@ -151,17 +153,6 @@ def _measured(stream: ResultStream, comparison: Comparison, static_info: StaticI
     if comparison.relation == "flag" or stream.spread <= 0 or np.isnan(stream.margin).all():
         return False
     return not is_text(comparison, static_info.unit_of(base_key(comparison.key)))
-
-
-def _scale(comparison: Comparison) -> float | None:
-    """How much the threshold moves with the parameter; None if other numbers decide that."""
-    transform = comparison.transform
-    if transform is None:
-        return 1.0
-    if transform.kind == "affine" and transform.scale:
-        return abs(transform.scale)
-    added = added_by(comparison)
-    return None if added is None else abs(added)
 
 
 def _share(which: Bools, weight: Floats) -> float:

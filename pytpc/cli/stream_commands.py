@@ -1,0 +1,269 @@
+"""The command ``stream``: passes on what a robot decides now."""
+
+from __future__ import annotations
+
+import socket
+import time
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from urllib.parse import urlsplit
+
+import click
+
+from pytpc.api.comparing import RecordedRun
+from pytpc.api.diagnosing import AskedMission
+from pytpc.api.graph_feed import GraphFeed
+from pytpc.api.live_diagnosis import LiveDiagnosis, asked_of_graph
+from pytpc.api.live_mission import RecordedFeed, Watching, fresh_watching
+from pytpc.api.streaming import DiagnosticsOutlet, Outlet, RerunOutlet, Stream
+from pytpc.base.errors import InputError, RunError
+from pytpc.base.signals import signals_end
+from pytpc.base.wording import many, plain
+from pytpc.cli.arguments import PATH, REFERENCE, as_object
+from pytpc.cli.lines import say
+from pytpc.cli.options import (
+    STATIC,
+    TYPES,
+    WINDOW,
+    Seconds,
+    check,
+    good_runs,
+    recording_of,
+)
+from pytpc.cli.running_graph import RUNNING, UsedGraph, use_graph
+from pytpc.cli.sources import known_static_file, static_for
+from pytpc.diagnosis.question import Question, Types
+from pytpc.present.viewers.rerun_export import RerunViewer, rerun_sdk
+from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
+from pytpc.ros.ros2.address import words_of
+from pytpc.ros.stream_side import StreamSide
+from pytpc.static.static_info import StaticInfo
+
+_VIEWER = "127.0.0.1:9876"
+_TURN_S = 0.1
+_CONNECT_S = 3.0
+
+
+@dataclass(frozen=True)
+class _StreamArguments:
+    recording: Path | None
+    static_source: Path | None
+    running_folder: Path | None
+    viewer: str | None
+    diagnostics: bool
+    references: tuple[Path, ...]
+    types: Types
+    window_s: float
+    seconds: float | None
+    speed: float
+
+
+@click.command("stream")
+@click.argument("recording", type=PATH, required=False)
+@click.option(
+    "--rerun",
+    "viewer",
+    is_flag=False,
+    flag_value=_VIEWER,
+    metavar="[HOST:PORT]",
+    help=f"Show it in a viewer of Rerun's that runs already. [default: {_VIEWER}]",
+)
+@click.option(
+    "--diagnostics",
+    is_flag=True,
+    help="Publish on /diagnostics, once a second: how each node reports, and the first suspect.",
+)
+@STATIC
+@RUNNING
+@REFERENCE
+@WINDOW
+@TYPES
+@click.option(
+    "--seconds",
+    type=Seconds(min=0.0, max=1e7),
+    metavar="N",
+    help="End after so long. [default: with Ctrl-C, or at the end of RECORDING]",
+)
+@click.option(
+    "--speed",
+    type=click.FloatRange(0.01, 1000.0),
+    default=1.0,
+    show_default=True,
+    help="How fast the clock of RECORDING runs.",
+)
+@as_object(_StreamArguments)
+def stream_command(given: _StreamArguments) -> None:
+    """Pass on what a running robot decides, to Rerun's viewer and to /diagnostics.
+
+    The robot is found as by `watch`, and ROS 1 need not be installed on this machine. With
+    RECORDING, a clock runs through the recording instead; then only --rerun is possible. Put
+    RECORDING before --rerun, or the address behind it. Marks of all observers are heard, and the
+    suspects are judged by them. At most 50 evaluations of a comparison are passed on every tenth
+    of a second. It ends with Ctrl-C.
+    """
+    if given.viewer is None and not given.diagnostics:
+        raise click.UsageError("give --rerun [HOST:PORT], --diagnostics or both")
+    if given.recording is not None and given.diagnostics:
+        raise click.UsageError(
+            "--diagnostics needs a running robot; play a bag with `rosbag play` or `ros2 bag play`"
+            " and leave RECORDING out, or give --rerun"
+        )
+    with ExitStack() as stack, signals_end():
+        # Before anything is read: what is missing is told at once.
+        shown = None if given.viewer is None else _connected(given.viewer)
+        stream = _opened(given, shown, stack)
+        until_s = None if given.seconds is None else time.monotonic() + given.seconds
+        while not stream.is_over() and (until_s is None or time.monotonic() < until_s):
+            time.sleep(_TURN_S)
+            stream.tick()
+        # What came in the last moment of a recording.
+        stream.tick()
+
+
+class _Opened:
+    """A stream, and when it ends by itself."""
+
+    def __init__(self, stream: Stream, is_over: Callable[[], bool]) -> None:
+        self.tick = stream.tick
+        self.is_over = is_over
+
+
+def _opened(given: _StreamArguments, shown: tuple[str, int] | None, stack: ExitStack) -> _Opened:
+    question = Question(given.types, given.window_s)
+    if given.recording is not None:
+        return _recorded(given, question, shown, stack)
+    graph = use_graph(given.running_folder)
+    source = given.static_source or graph.static
+    static = _with_comparisons(static_for(source), source)
+    good = good_runs(given.references, static)
+    file = known_static_file(source)
+    side = StreamSide(graph.master, publishes=given.diagnostics)
+    stack.callback(side.close)
+    feed = GraphFeed(graph.master, fresh_watching(static, question))
+    outlets: list[Outlet] = []
+    if given.diagnostics:
+        outlets.append(DiagnosticsOutlet(side, feed, graph.master))
+    viewer = _viewer(shown, time.time_ns(), outlets)
+    judged = LiveDiagnosis(asked_of_graph(graph.master, static, file, question, good))
+    stream = Stream(feed, side.now_ns, side.marks, judged, outlets)
+    stack.callback(_close, stream, viewer)
+    _tell(given, graph)
+    return _Opened(stream, lambda: False)
+
+
+def _recorded(
+    given: _StreamArguments,
+    question: Question,
+    shown: tuple[str, int] | None,
+    stack: ExitStack,
+) -> _Opened:
+    assert given.recording is not None
+    recording = recording_of(given.recording)
+    static = static_for(given.static_source, given.recording, recording)
+    check(recording, _with_comparisons(static, given.static_source), given.recording)
+    good = good_runs(given.references, static)
+    run = RecordedRun(recording, given.recording)
+
+    def ask(mission: Recording) -> AskedMission:
+        return AskedMission.of(RecordedRun(mission, run.source), static, question, good)
+
+    fresh: Watching = fresh_watching(static, question)
+    outlets: list[Outlet] = []
+    viewer = _viewer(shown, recording.end_ns, outlets)
+    played = _Played(recording, given.speed)
+    judged = LiveDiagnosis(ask, recording)
+    feed = RecordedFeed(recording, fresh)
+    stream = Stream(feed, played.now_ns, played.marks, judged, outlets)
+    stack.callback(_close, stream, viewer)
+    return _Opened(stream, played.is_over)
+
+
+class _Played:
+    """The clock of a recording, and its marks up to now."""
+
+    def __init__(self, recording: Recording, speed: float) -> None:
+        self._recording = recording
+        self._speed = speed
+        self._began_s = time.monotonic()
+
+    def now_ns(self) -> int:
+        passed_ns = round((time.monotonic() - self._began_s) * self._speed * 1e9)
+        return min(self._recording.start_ns + passed_ns, self._recording.end_ns)
+
+    def marks(self) -> tuple[Mark, ...]:
+        now_ns = self.now_ns()
+        return tuple(mark for mark in self._recording.marks if mark.time_ns <= now_ns)
+
+    def is_over(self) -> bool:
+        return self.now_ns() >= self._recording.end_ns
+
+
+def _with_comparisons(static: StaticInfo, source: Path | None) -> StaticInfo:
+    if not static.thresholds:
+        raise InputError("the static information has no comparison with a parameter", source)
+    return static
+
+
+def _connected(address: str) -> tuple[str, int]:
+    """Host and port of a viewer that answers.
+
+    Raises:
+        UsageError: it is no address.
+        RunError: nobody answers there.
+        MissingToolError: Rerun is not installed.
+    """
+    rerun_sdk()
+    try:
+        found = urlsplit(f"//{address.removeprefix('rerun+http://').removesuffix('/proxy')}")
+        host, port = found.hostname, found.port
+    except ValueError:
+        host, port = None, None
+    if not host or port is None:
+        hint = "; put RECORDING before --rerun" if Path(address).exists() else ""
+        raise click.UsageError(f"--rerun takes HOST:PORT, as {_VIEWER}, not {address}{hint}")
+    try:
+        socket.create_connection((host, port), _CONNECT_S).close()
+    except OSError as error:
+        raise RunError(
+            f"no viewer of Rerun's answers at {host}:{port} ({error.strerror or error}); start one"
+            f" with: rerun --port {port}"
+        ) from error
+    return host, port
+
+
+def _viewer(
+    shown: tuple[str, int] | None, end_ns: int, outlets: list[Outlet]
+) -> RerunOutlet | None:
+    if shown is None:
+        return None
+    rr = rerun_sdk()
+    viewer = RerunViewer(rr, end_ns)
+    host, port = shown
+    at = f"[{host}]" if ":" in host else host
+    viewer.stream.connect_grpc(f"rerun+http://{at}:{port}/proxy")
+    found = RerunOutlet(viewer, rr)
+    outlets.append(found)
+    return found
+
+
+def _tell(given: _StreamArguments, graph: UsedGraph) -> None:
+    where: Sequence[str] = [
+        *(["/diagnostics"] if given.diagnostics else []),
+        *([f"Rerun at {given.viewer}"] if given.viewer is not None else []),
+    ]
+    say(
+        f"pytpc: streaming from {plain(words_of(graph.master))} to {plain(' and '.join(where))};"
+        " Ctrl-C ends it"
+    )
+
+
+def _close(stream: Stream, viewer: RerunOutlet | None) -> None:
+    stream.close()
+    left_out = "" if viewer is None or not viewer.left_out else f", {viewer.left_out:,} not shown"
+    say(f"pytpc: passed on {many(stream.evaluations, 'evaluation')}{left_out}")
+
+
+COMMANDS: list[click.Command] = [stream_command]

@@ -1,0 +1,1 @@
+"""Writes missions for other viewers: MCAP, layouts, Rerun, CSV and Parquet."""

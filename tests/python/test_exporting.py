@@ -1,0 +1,295 @@
+"""What is exported of a mission, and each format read back by its own reader."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import re
+from collections import defaultdict
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import pyarrow.parquet as pq
+import pytest
+from click.testing import CliRunner, Result
+from export_samples import HOSTILE, NODE, exported, mission
+from mcap.reader import make_reader
+from mcap_ros2.decoder import DecoderFactory
+from mission_samples import ns
+from rosbags.highlevel import AnyReader
+from rosbags.typesys import Stores, get_typestore
+
+from pytpc.cli.main import main
+from pytpc.diagnosis.results.exported import MissionExport
+from pytpc.present.viewers.flat_tables import TABLES, write_tables
+from pytpc.present.viewers.layouts import foxglove_layout, plotjuggler_layout
+from pytpc.present.viewers.mcap_export import write_mcap
+
+LIMIT = "/tpc/arm/guard/limit/node_cpp_10"
+NEAR = "/tpc/arm/guard/near/node_cpp_11"
+USED = "/tpc/arm/guard/used/node_cpp_12"
+# time, topic, value, threshold, margin, result, flop, evaluations; worked out in export_samples.
+EVALUATIONS = [
+    (1.0, LIMIT, 4.0, 3.0, 1.0, True, False, 1),
+    (2.0, LIMIT, 2.0, 3.0, -1.0, False, True, 1),
+    (2.5, NEAR, 5.0, 8.0, 1.5, True, False, 1),
+    (3.0, USED, 1.0, 1.0, None, True, False, 1),
+    (3.5, NEAR, 9.0, 8.0, -0.5, False, True, 7),
+    (4.0, LIMIT, 4.0, 3.5, 0.5, True, True, 1),
+]
+
+
+def told(margin: float) -> float | None:
+    return None if math.isnan(margin) else margin
+
+
+@pytest.mark.parametrize("size", [1, 2, 100])
+def test_evaluations_and_summaries_come_in_order_of_time(size: int) -> None:
+    found = exported()
+    rows = [
+        (time / 1e9, found.series[number].topic, value, thresh, told(margin), result, flop, count)
+        for part in found.rows(size)
+        for time, number, value, thresh, margin, result, _, flop, count in zip(
+            *(column.tolist() for column in part), strict=True
+        )
+    ]
+    assert rows == EVALUATIONS
+    assert found.count == 6
+    assert [one.unit for one in found.series] == ["parameter", "parameter", ""]
+
+
+# ~limit is 3 and later 3.5; ~near is half its threshold of 8.
+def test_the_values_of_parameters_are_those_of_their_thresholds() -> None:
+    values = [(one.time_ns, one.parameter, one.number) for one in exported().values]
+    assert values == [
+        (ns(1.0), "~limit", 3.0),
+        (ns(4.0), "~limit", 3.5),
+        (ns(2.5), "~near", 4.0),
+        (ns(3.0), "~used", 1.0),
+    ]
+
+
+def test_each_mark_is_judged_by_those_up_to_it() -> None:
+    found = exported()
+    assert [(one.time_ns, one.mark) for one in found.suspects] == [(ns(4.5), 1), (ns(5.0), 2)]
+    assert all(
+        sum(one.probability for one in at.suspects) + at.none == pytest.approx(1.0)
+        for at in found.suspects
+    )
+    kinds = [line.kind for line in found.log]
+    assert kinds.count("mark") == 2
+    assert kinds.count("verdict") == 2
+
+
+def messages_of(path: Path) -> dict[str, list[tuple[float, Any]]]:
+    found = defaultdict(list)
+    with path.open("rb") as stream:
+        reader = make_reader(stream, decoder_factories=[DecoderFactory()])
+        for _, channel, message, decoded in reader.iter_decoded_messages():
+            assert message.publish_time == message.log_time
+            found[channel.topic].append((message.log_time / 1e9, decoded))
+    return found
+
+
+@pytest.fixture
+def mcap(tmp_path: Path) -> Path:
+    write_mcap(exported(), tmp_path / "mission.mcap")
+    return tmp_path / "mission.mcap"
+
+
+def test_mcaps_own_reader_reads_it(mcap: Path) -> None:
+    found = messages_of(mcap)
+    rows = sorted(
+        (time, topic, m.value, m.threshold, told(m.margin), m.result, m.flop, m.evaluations)
+        for topic in (LIMIT, NEAR, USED)
+        for time, m in found[topic]
+    )
+    assert rows == EVALUATIONS
+    assert [(time, m.type, m.observer, m.note) for time, m in found["/tpc/marks"]] == [
+        (4.5, 1, "ann", "=SUM(A1)"),
+        (5.0, 2, "", ""),
+    ]
+    (_, first), (_, last) = found["/tpc/suspects"]
+    assert (first.mark, last.mark) == (1, 2)
+    likeliest = last.suspects[0]
+    (name,) = [topic for topic in found if topic.startswith("/tpc/probabilities/limit")]
+    assert likeliest.parameter == "~limit"
+    assert found[name][-1][1].probability == likeliest.probability
+    assert [(time, m.value) for time, m in found["/tpc/arm/guard/limit/parameter"]] == [
+        (1.0, 3.0),
+        (4.0, 3.5),
+    ]
+
+
+def test_the_ranks_are_those_of_each_period(mcap: Path) -> None:
+    times = [time for time, _ in messages_of(mcap)["/tpc/ranks/limit"]]
+    assert times == [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
+
+
+def test_rosbags_reads_it_by_the_definitions_in_it(mcap: Path) -> None:
+    with AnyReader([mcap], default_typestore=get_typestore(Stores.EMPTY)) as reader:
+        connections = [one for one in reader.connections if one.topic == LIMIT]
+        values = [
+            reader.deserialize(data, connection.msgtype).value
+            for connection, _, data in reader.messages(connections)
+        ]
+    assert values == [4.0, 2.0, 4.0]
+
+
+def test_the_file_says_what_each_topic_is(mcap: Path) -> None:
+    with mcap.open("rb") as stream:
+        summary = make_reader(stream).get_summary()
+    assert summary is not None
+    about = {one.topic: one.metadata for one in summary.channels.values()}
+    assert about[NEAR]["node"] == NODE
+    assert about[NEAR]["parameter"] == "~near"
+    assert about[NEAR]["place"] == "src/node.cpp:11"
+    assert about[NEAR]["margin_unit"] == "parameter"
+    assert summary.statistics is not None
+    assert summary.statistics.message_start_time == ns(1.0)
+
+
+def fields_of(path: Path) -> dict[str, set[str]]:
+    return {topic: set(found[0][1].__slots__) for topic, found in messages_of(path).items()}
+
+
+def test_all_that_the_foxglove_layout_names_is_in_the_file(mcap: Path) -> None:
+    layout = foxglove_layout(exported())
+    fields = fields_of(mcap)
+    text = json.dumps(layout)
+    named = re.findall(r'"(?:value|topicPath)": "(/tpc[^"]*)"', text)
+    assert len(named) >= 8
+    for path in named:
+        topic, _, field = path.partition(".")
+        assert field in fields[topic], path
+    assert layout["configById"]["RosOut!log"]["topicToRender"] in fields
+    assert set(re.findall(r"[A-Za-z]+![a-z0-9]+", json.dumps(layout["layout"]))) == set(
+        layout["configById"]
+    )
+
+
+def test_all_that_the_plotjuggler_layout_names_is_in_the_file(mcap: Path) -> None:
+    root = plotjuggler_layout(exported(), mcap.parent / "layouts/mission.xml", mcap)
+    fields = fields_of(mcap)
+    curves = [str(one.get("name")) for one in root.iter("curve")]
+    assert f"{LIMIT}/value" in curves
+    assert f"{LIMIT}/threshold" in curves
+    for curve in curves:
+        topic, _, field = curve.rpartition("/")
+        assert field in fields[topic], curve
+    file = root.find("previouslyLoaded_Datafiles/fileInfo")
+    assert file is not None
+    assert file.get("filename") == "../mission.mcap"
+    parameters = file.find("plugin/parameters")
+    assert parameters is not None
+    assert set(str(parameters.get("selected_topics")).split(";")) <= set(fields)
+    # What is plotted is in the range that is shown, relative to the first time of the file.
+    (limit,) = [one for one in root.iter("DockArea") if "~limit" in str(one.get("name"))][:1]
+    shown = limit.find("plot/range")
+    assert shown is not None
+    assert float(str(shown.get("bottom"))) < 2.0
+    assert float(str(shown.get("top"))) > 4.0
+    assert float(str(shown.get("right"))) == 5.0
+
+
+# pandas reads it: the names, and the numbers of the rows above.
+def test_tables_as_parquet(tmp_path: Path) -> None:
+    write_tables(exported(), tmp_path, "parquet")
+    assert sorted(one.name for one in tmp_path.iterdir()) == sorted(
+        f"{name}.parquet" for name in TABLES
+    )
+    rows = pq.read_table(tmp_path / "evaluations.parquet").to_pylist()
+    assert [(r["time_ns"] / 1e9, r["value"], told(r["margin"])) for r in rows] == [
+        (time, value, margin) for time, _, value, _, margin, *_ in EVALUATIONS
+    ]
+    assert [r["seconds"] for r in rows] == [0.0, 1.0, 1.5, 2.0, 2.5, 3.0]
+    assert rows[4]["evaluations"] == 7
+    assert rows[0]["parameter"] == "~limit"
+    suspects = pq.read_table(tmp_path / "suspects.parquet").to_pylist()
+    assert {one["mark"] for one in suspects} == {1, 2}
+
+
+# A spreadsheet works out what begins with an equals sign; a number stays one.
+def test_tables_as_csv_run_no_formula(tmp_path: Path) -> None:
+    write_tables(exported(), tmp_path, "csv")
+    with (tmp_path / "marks.csv").open(newline="") as stream:
+        assert [one["note"] for one in csv.DictReader(stream)] == ["'=SUM(A1)", ""]
+    with (tmp_path / "evaluations.csv").open(newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert [float(one["value"]) for one in rows] == [4.0, 2.0, 5.0, 1.0, 9.0, 4.0]
+    assert rows[1]["margin"] == "-1"
+    assert rows[0]["relation"] == ">"
+
+
+def hostile() -> MissionExport:
+    return exported(
+        mission((5.5, 0, True, 4.0, 3.0, HOSTILE), (5.6, 0, True, 4.0, 3.0, f"{HOSTILE}!"))
+    )
+
+
+def test_hostile_names_are_legal_and_do_not_meet(tmp_path: Path) -> None:
+    found = hostile()
+    write_mcap(found, tmp_path / "mission.mcap")
+    topics = set(messages_of(tmp_path / "mission.mcap"))
+    script = [one for one in topics if "script" in one and "limit/node" in one]
+    assert len(script) == 2
+    assert all(re.fullmatch(r"[A-Za-z0-9_/]+", one) for one in topics)
+    write_tables(found, tmp_path / "csv", "csv")
+    write_tables(found, tmp_path / "parquet", "parquet")
+    root = plotjuggler_layout(found, tmp_path / "x.xml", None)
+    again = ElementTree.fromstring(ElementTree.tostring(root))
+    assert "\n" not in "".join(str(one.get("name")) for one in again.iter("DockArea"))
+    assert json.loads(json.dumps(foxglove_layout(found)))
+
+
+def test_a_mission_without_marks_and_reports_of_known_comparisons(tmp_path: Path) -> None:
+    recording = mission()
+    found = exported(replace(recording, marks=(), events=recording.events.take(slice(0, 0))))
+    assert found.suspects == ()
+    assert found.count == 1
+    write_mcap(found, tmp_path / "mission.mcap")
+    assert len(messages_of(tmp_path / "mission.mcap")[NEAR]) == 1
+
+
+def asked(*words: str) -> Result:
+    return CliRunner().invoke(main, list(words))
+
+
+EXAMPLE = Path(__file__).parents[2] / "examples/recorded_mission"
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ([EXAMPLE / "static.json", "--mcap", "x"], "is static information, for --sarif and --html"),
+        ([EXAMPLE, "--html", "x"], "is a recording, for --mcap, --foxglove"),
+        ([EXAMPLE, "--html", "x", "--csv", "y"], "--csv is for a recording"),
+        ([EXAMPLE, "--csv", "x", "--package", "y"], "--package is for static information"),
+        ([EXAMPLE / "static.json", "--html", "x", "--period", "2"], "--period is for recordings"),
+        ([EXAMPLE, EXAMPLE, "--csv", "x"], "give one recording as SOURCE for --csv"),
+    ],
+)
+def test_what_does_not_fit_the_source_is_refused(words: list[object], said: str) -> None:
+    ran = asked("export", *map(str, words))
+    assert ran.exit_code == 2
+    assert said in " ".join(ran.stderr.split())
+
+
+def test_the_command_writes_several_at_once(tmp_path: Path) -> None:
+    outputs = {
+        "--mcap": tmp_path / "m.mcap",
+        "--foxglove": tmp_path / "m.json",
+        "--plotjuggler": tmp_path / "m.xml",
+        "--csv": tmp_path / "csv",
+    }
+    words = [str(word) for pair in outputs.items() for word in pair]
+    ran = asked("export", str(EXAMPLE), "--json", *words)
+    assert ran.exit_code == 0, ran.stderr
+    document = json.loads(ran.stdout)
+    assert document["rows"] == 12797
+    assert document["marks"] == 5
+    assert document["outputs"] == {name.lstrip("-"): str(path) for name, path in outputs.items()}
+    assert all(path.exists() for path in outputs.values())
