@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.results.advice import Advice, BlamedAdvice, RankCurves
+from pytpc.diagnosis.results.behaviour import Behaviour
 from pytpc.diagnosis.results.diagnosis import Diagnosis
 from pytpc.diagnosis.results.differences import RunDifferences
-from pytpc.diagnosis.results.behaviour import Behaviour
 from pytpc.diagnosis.results.suspects import Accused, MarkRanking
 from pytpc.diagnosis.results.turn_groups import TurnGroup
 from pytpc.recording.declaration import Declared
