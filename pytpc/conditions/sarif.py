@@ -21,7 +21,7 @@ from pytpc.static.static_info import StaticInfo
 SCHEMA = (
     "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 )
-_ROOT = "%SRCROOT%"
+ROOT = "%SRCROOT%"
 _RULES = {
     "parameter": (
         "ComparisonWithParameter",
@@ -65,7 +65,7 @@ def sarif_log(
     """
     roots = [unit.source_root for unit in static.units]
     root = os.path.normpath(srcroot.absolute()) if srcroot is not None else _common(roots)
-    places = _Places(root, dict(static.copies))
+    places = Places(root, dict(static.copies))
     kinds = list(_RULES)
     return {
         "$schema": SCHEMA,
@@ -79,7 +79,7 @@ def sarif_log(
                         "toolExecutionNotifications": [_warning(text) for text in static.troubles],
                     }
                 ],
-                "originalUriBaseIds": {_ROOT: {"uri": _uri(root.rstrip("/") + "/")}},
+                "originalUriBaseIds": {ROOT: {"uri": file_uri(root.rstrip("/") + "/")}},
                 "columnKind": "unicodeCodePoints",
                 "results": [_result(each, kinds.index(each.tpc.type), places) for each in found],
             }
@@ -87,10 +87,11 @@ def sarif_log(
     }
 
 
-class _Places:
+class Places:
     """Places in files as SARIF has them."""
 
     def __init__(self, root: str, copies: Mapping[str, str]) -> None:
+        """Paths are relative to ``root``; ``copies`` are installed headers and their originals."""
         self._root = PurePosixPath(root)
         self._copies = copies
         self._lines = lru_cache(maxsize=256)(_read_lines)
@@ -121,8 +122,8 @@ class _Places:
     def _artifact(self, file: str) -> dict[str, str]:
         path = PurePosixPath(file)
         if path.is_relative_to(self._root):
-            return {"uri": quote(str(path.relative_to(self._root))), "uriBaseId": _ROOT}
-        return {"uri": _uri(file)}
+            return {"uri": quote(str(path.relative_to(self._root))), "uriBaseId": ROOT}
+        return {"uri": file_uri(file)}
 
 
 def _driver() -> dict[str, Any]:
@@ -146,7 +147,7 @@ def _driver() -> dict[str, Any]:
     }
 
 
-def _result(each: Details, rule: int, places: _Places) -> dict[str, Any]:
+def _result(each: Details, rule: int, places: Places) -> dict[str, Any]:
     tpc, nearest = each.tpc, each.nearest
     location: dict[str, Any] = {
         "physicalLocation": places.location(tpc.file, tpc.lineno, tpc.column, nearest.source_code),
@@ -204,7 +205,7 @@ def _message(each: Details) -> str:
     return f"{text}: {what} depends {by}{default}."
 
 
-def _step(step: PathStep, unit: LinkUnit, places: _Places) -> dict[str, Any]:
+def _step(step: PathStep, unit: LinkUnit, places: Places) -> dict[str, Any]:
     location: dict[str, Any] = {"message": {"text": step.what or step.step}}
     if step.file:
         location["physicalLocation"] = places.location(
@@ -234,7 +235,8 @@ def _common(roots: Sequence[str]) -> str:
     return os.path.commonpath(roots) if roots else "/"
 
 
-def _uri(path: str) -> str:
+def file_uri(path: str) -> str:
+    """The URI of an absolute path."""
     return "file://" + quote(path)
 
 
