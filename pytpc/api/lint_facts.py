@@ -63,10 +63,6 @@ class Robot:
         return found
 
     @cached_property
-    def _left_out(self) -> frozenset[str]:
-        return frozenset(f"{one.package}/{one.link_unit}" for one in self.static.left_out)
-
-    @cached_property
     def _libraries(self) -> Libraries:
         return Libraries(folders=system_folders(self.env, ()))
 
@@ -75,6 +71,15 @@ class Robot:
         """The last parts of the names that code of the workspace sets."""
         roots = {unit.source_root for unit in self.static.units}
         return frozenset[str]().union(*(source_texts(root).sets for root in sorted(roots)))
+
+    @cached_property
+    def _read_places(self) -> frozenset[tuple[str, int]]:
+        """The files and lines of all known reads."""
+        return frozenset(
+            (unit.absolute(read.file), read.lineno)
+            for unit in self.static.units
+            for read in unit.parameters
+        )
 
     def facts(self, trace: Trace, wanted: frozenset[str] | None = None) -> Facts:
         """The facts of one launch file.
@@ -121,8 +126,7 @@ class Robot:
     ) -> str:
         """Why not all reads of a program are known; empty where they are."""
         if not units:
-            left_out = program in self._left_out
-            return f"{program} was not analysed" if left_out else f"{program} is of no workspace"
+            return f"{program} was not analysed"
         if any(unit is None for unit in units):
             return f"a library of {program} was not analysed"
         for unit in units:
@@ -176,11 +180,11 @@ class Robot:
 
     def _texts(self, units: Iterable[LinkUnit]) -> frozenset[str]:
         """Texts in the sources of units beside which no known read stands."""
-        roots: dict[str, set[tuple[str, int]]] = {}
-        for unit in units:
-            reads = roots.setdefault(unit.source_root, set())
-            reads |= {(unit.absolute(read.file), read.lineno) for read in unit.parameters}
-        found = (source_texts(root).unread(reads) for root, reads in roots.items())
+        roots = {(unit.source_root, unit.is_python) for unit in units}
+        found = (
+            source_texts(root).unread(self._read_places, python=is_python)
+            for root, is_python in sorted(roots)
+        )
         return frozenset[str]().union(*found)
 
     def _of_libraries(self, hosts: tuple[Path, ...], wanted: frozenset[str]) -> frozenset[str]:

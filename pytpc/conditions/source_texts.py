@@ -46,11 +46,15 @@ class SourceTexts:
     reads_all: bool
     converted: tuple[str, ...]
 
-    def unread(self, reads: Collection[tuple[str, int]]) -> frozenset[str]:
-        """The texts that stand at another place than beside one of these reads."""
+    def unread(self, reads: Collection[tuple[str, int]], *, python: bool) -> frozenset[str]:
+        """The texts in the files of a language at other places than beside one of these reads."""
         beside = {(file, line + step) for file, line in reads for step in range(-1, _BESIDE + 1)}
         return frozenset(
-            text for text, places in self.texts.items() if not beside.issuperset(places)
+            text
+            for text, places in self.texts.items()
+            if any(
+                place not in beside for place in places if place[0].endswith(_CPP) is not python
+            )
         )
 
     def converts(self, name: str) -> bool:

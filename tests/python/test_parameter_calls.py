@@ -121,12 +121,13 @@ def test_texts_that_stand_beside_no_read(package: Path):
     (package / "other.hpp").write_text('nh.setParam("made", 1);\nx = angles::from_degrees(tilt_);\n')
     found = source_texts(str(package))
     cpp, python = f"{package}/guard.cpp", f"{package}/guard.py"
-    assert "rate" in found.unread([])
-    reads = [(cpp, 3), (cpp, 4), (python, 4)]
-    # "scan" and what is set stand beside none of them.
-    left = found.unread(reads)
-    assert {"rate", "frame"}.isdisjoint(left)
-    assert {"scan", "size", "made"} <= left
+    assert "rate" in found.unread([], python=True)
+    # "port" stands beside the read in line 4, "gain" beside none; "scan" is in Python alone.
+    assert found.unread([(python, 4)], python=True) >= {"scan", "gain"}
+    assert {"rate", "port"}.isdisjoint(found.unread([(python, 4)], python=True))
+    left = found.unread([(cpp, 3), (cpp, 4)], python=False)
+    assert {"rate", "frame", "scan"}.isdisjoint(left)
+    assert {"size", "made"} <= left
     assert found.sets == {"made"}
     assert not found.reads_all
     assert found.converts("tilt")
