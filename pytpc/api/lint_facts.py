@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import os
+import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 
 from pytpc.conditions.parameter_calls import call_text
 from pytpc.conditions.source_texts import SourceTexts, source_texts
 from pytpc.lint.facts import Angle, Earlier, Facts, Node, NodeRead, Setting, last_part, own_part
 from pytpc.lint.finding import Spot
-from pytpc.processes.binaries import Libraries, literals, symbols, system_folders
+from pytpc.processes.binaries import Libraries, literals, system_folders
 from pytpc.processes.process import Process, Processes
 from pytpc.processes.starts import loaded_by
 from pytpc.recording.declaration import Declared
@@ -31,7 +32,10 @@ _TABLES = ("XmlRpc", "map<", "unordered_map<", "dict")
 _PYTHON_ROS1 = ("rospy", "rosparam")
 _PREFIX = "get_parameters_by_prefix"
 _OF_SERVER = "dynamic_reconfigure"
-_NODELET = "nodelet/nodelet"
+_READS = re.compile(rb"_ZNK?3ros(?:10NodeHandle\w{0,20}(?:[pP]aram)|5param)")
+_WORD = 8
+# `movabs` of x86-64 with eight letters that may begin a name.
+_MOVABS = re.compile(rb"[\x48\x49][\xb8-\xbf]([A-Za-z_/~][A-Za-z0-9_/]{7})")
 
 
 @dataclass(frozen=True)
@@ -194,24 +198,25 @@ class Robot:
         for binary in self._libraries.all_of(hosts):
             if binary.path not in ours and _reads_parameters(binary.path):
                 found |= literals(binary.path) & wanted
-                # A short text may stand in the code itself, eight bytes at a time.
-                rest = [one for one in wanted - found if len(one) < _SHORT]
-                content = binary.path.read_bytes() if rest else b""
-                found |= {one for one in rest if one[:8].encode() in content}
+                starts = _in_code(binary.path)
+                found |= {one for one in wanted if one[:_WORD] in starts}
         return frozenset(found)
 
 
-_SHORT = 23
+@lru_cache(maxsize=256)
+def _in_code(path: Path) -> frozenset[str]:
+    """The texts of eight letters that the code of a library has as numbers.
+
+    A compiler builds a short text in place, eight bytes at a time, and has no literal of it then.
+    """
+    found = _MOVABS.findall(path.read_bytes())
+    return frozenset(text.decode("ascii") for text in found)
 
 
+@lru_cache(maxsize=1024)
 def _reads_parameters(path: Path) -> bool:
-    """Whether a library of ROS 1 calls what reads parameters."""
-    defined, taken = symbols(path)
-    return any(
-        "Param" in name or "5param" in name
-        for name in (*taken, *defined)
-        if "10NodeHandle" in name or "3ros5param" in name
-    )
+    """Whether a library of ROS 1 calls what reads parameters, by the names of its symbols."""
+    return _READS.search(path.read_bytes()) is not None
 
 
 def _full_name(read: ParameterRead, node: str) -> str:

@@ -139,17 +139,23 @@ def _rows(table: Events | Summaries, key: str, node: str) -> Int64s:
 
 
 def _crossings(sides: dict[tuple[str, str], _Side]) -> Iterator[Crossing]:
+    """One for each parameter none of whose comparisons was crossed: that with most evaluations."""
+    crossed = {side.parameter for side in sides.values() if side.is_crossed}
+    most: dict[str, _Side] = {}
     for side in sides.values():
-        if side.evaluations and not side.is_crossed:
-            nearest = side.nearest if math.isfinite(side.nearest) else math.nan
-            yield Crossing(
-                side.parameter,
-                side.spot,
-                side.source_code,
-                side.threshold,
-                side.evaluations,
-                side.seconds,
-                nearest,
-                side.result,
-                side.recordings,
-            )
+        if side.evaluations and side.parameter not in crossed:
+            before = most.get(side.parameter)
+            if before is None or before.evaluations < side.evaluations:
+                most[side.parameter] = side
+    for side in most.values():
+        yield Crossing(
+            side.parameter,
+            side.spot,
+            side.source_code,
+            side.threshold,
+            side.evaluations,
+            side.seconds,
+            side.nearest if math.isfinite(side.nearest) else math.nan,
+            side.result,
+            side.recordings,
+        )

@@ -26,6 +26,8 @@ def wrong_type(facts: Facts) -> Iterator[Finding]:
     """Values that none of their reads takes, by the rules of roscpp, rospy and ROS 2."""
     for setting in facts.settings:
         reads = [read for _, read in facts.readers(setting.name)]
+        # In ROS 2 the declaration decides, and other calls take what it took.
+        reads = [read for read in reads if "declare_parameter" in read.api] or reads
         faults = [_fault(read, setting.value) for read in reads]
         if not faults or not all(faults):
             continue

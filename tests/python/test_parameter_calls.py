@@ -118,7 +118,9 @@ def test_a_place_that_is_not_there(tmp_path: Path):
 
 
 def test_texts_that_stand_beside_no_read(package: Path):
-    (package / "other.hpp").write_text('nh.setParam("made", 1);\nx = angles::from_degrees(tilt_);\n')
+    (package / "other.hpp").write_text(
+        'nh.setParam("made", 1);\nx = angles::from_degrees(tilt_);\n'
+    )
     found = source_texts(str(package))
     cpp, python = f"{package}/guard.cpp", f"{package}/guard.py"
     assert "rate" in found.unread([], python=True)
