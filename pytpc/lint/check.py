@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
+from pytpc.base.wording import many
 from pytpc.lint.angles import units_of_angles
-from pytpc.lint.facts import Facts, Unjudged
+from pytpc.lint.facts import Facts, Unjudged, last_part
 from pytpc.lint.finding import KINDS, Finding, Kind, Spot
 from pytpc.lint.limits import contradicting
 from pytpc.lint.recorded import never_crossed, without_effect
@@ -77,13 +78,24 @@ def joined(checks: Sequence[Checked]) -> Checked:
         if one.kind != "unread" or one.spot not in used
     }.values()
     return Checked(
-        tuple(sorted(found, key=Finding.order)),
+        tuple(_once(sorted(found, key=Finding.order))),
         used,
         sum(each.settings for each in checks),
         sum(each.nodes for each in checks),
         Unjudged({why: frozenset(names) for why, names in reasons.items()}),
         sum(each.ignored for each in checks),
     )
+
+
+def _once(findings: Iterable[Finding]) -> Iterator[Finding]:
+    """One finding for a line that sets the value of several names, as for two costmaps."""
+    alike = defaultdict[tuple[object, ...], list[Finding]](list)
+    for one in findings:
+        places = tuple(spot for _, spot in one.evidence)
+        alike[one.kind, one.spot, last_part(one.parameter), places].append(one)
+    for first, *others in alike.values():
+        more = f" (and so {many(len(others), 'more name')})" if others else ""
+        yield replace(first, text=f"{first.text}{more}")
 
 
 def without_ignored(checked: Checked, ignored: Iterable[Finding]) -> Checked:

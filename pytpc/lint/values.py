@@ -160,7 +160,7 @@ def _effect(one: Declared, setting: Setting) -> str:
         return ""
     assert isinstance(setting.value, int | float)
     end = one.low if one.low is not None and setting.value < one.low else one.high
-    return f"; the node takes {show(end)}"
+    return f"; its server makes {show(end)} of it"
 
 
 def spot_of(place: str) -> Spot:

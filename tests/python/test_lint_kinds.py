@@ -125,7 +125,7 @@ def test_out_of_range():
     inside = declared("x", 0, 1)
     [found] = out_of_range(facts({X: 3.5}, node(reads), declared=[inside]))
     assert found.text == (
-        "/robot/guard/x is 3.5, outside of what is declared: 0 to 1; the node takes 1"
+        "/robot/guard/x is 3.5, outside of what is declared: 0 to 1; its server makes 1 of it"
     )
     assert found.evidence == (("declared", Spot("/ws/src/robot/cfg/Guard.cfg", 9)),)
     choices = declared("x", None, None, choices=(("Fast", 1), ("Slow", 2)))

@@ -107,3 +107,12 @@ def test_a_line_is_used_if_another_launch_file_uses_it():
     used = check(Facts([setting("/arm/x", 1, 7)], [node(read("/arm/x"), name="/arm")]))
     assert len(joined([unused, unused]).findings) == 1
     assert joined([unused, used]).findings == ()
+
+
+# As costmap_common.yaml, which is loaded for two costmaps.
+def test_one_line_in_two_namespaces_has_one_finding():
+    both = [setting("/robot/guard/a/x", 1, 7), setting("/robot/guard/b/x", 1, 7)]
+    found = joined([check(Facts(both, [node(LIMIT)]))])
+    assert said(found.findings) == [
+        (7, "/robot/guard does not read /robot/guard/a/x (and so 1 more name)")
+    ]
