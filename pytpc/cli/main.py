@@ -50,6 +50,7 @@ _GROUPED = {
         "apply": ("value_commands", "Change a value in the file that set it, or on the robot."),
     },
     WORKSPACE: {
+        "lint": ("lint_commands", "Show what is wrong with parameters before the robot runs."),
         "processes": ("process_commands", "Show which code runs in one process."),
         "list": ("list_commands", "List the comparisons that were found."),
         "show": ("static_commands", "Show everything known about a comparison."),

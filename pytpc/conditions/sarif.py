@@ -22,7 +22,7 @@ from pytpc.static.static_info import StaticInfo
 SCHEMA = (
     "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 )
-_ROOT = "%SRCROOT%"
+ROOT = "%SRCROOT%"
 _RULES = {
     "parameter": (
         "ComparisonWithParameter",
@@ -77,7 +77,7 @@ def sarif_log(
         srcroot: folder that paths are relative to; by default what the folders of all packages have
             in common. Files elsewhere have absolute URIs.
     """
-    places = _Places(_root(static, srcroot), dict(static.copies))
+    places = Places(_root(static, srcroot), dict(static.copies))
     return _log(static.troubles, places, [_result(each, places) for each in found])
 
 
@@ -97,7 +97,7 @@ def compared_log(
             older build are at the same relative paths.
     """
     root = _root(new, srcroot)
-    here, there = _Places(root, dict(new.copies)), _Places(_same_root(old, new, root), {})
+    here, there = Places(root, dict(new.copies)), Places(_same_root(old, new, root), {})
     results = []
     for each in found:
         result = _result(each.details, there if each.state == "absent" else here)
@@ -109,7 +109,7 @@ def compared_log(
     return _log(new.troubles, here, results)
 
 
-def _log(troubles: Iterable[str], places: _Places, results: list[dict[str, Any]]) -> dict[str, Any]:
+def _log(troubles: Iterable[str], places: Places, results: list[dict[str, Any]]) -> dict[str, Any]:
     return {
         "$schema": SCHEMA,
         "version": "2.1.0",
@@ -122,7 +122,7 @@ def _log(troubles: Iterable[str], places: _Places, results: list[dict[str, Any]]
                         "toolExecutionNotifications": [_warning(text) for text in troubles],
                     }
                 ],
-                "originalUriBaseIds": {_ROOT: {"uri": _uri(places.root.rstrip("/") + "/")}},
+                "originalUriBaseIds": {ROOT: {"uri": file_uri(places.root.rstrip("/") + "/")}},
                 "columnKind": "unicodeCodePoints",
                 "results": results,
             }
@@ -149,10 +149,11 @@ def _same_root(old: StaticInfo, new: StaticInfo, root: str) -> str:
     return _root(old, None)
 
 
-class _Places:
+class Places:
     """Places in files as SARIF has them."""
 
     def __init__(self, root: str, copies: Mapping[str, str]) -> None:
+        """Paths are relative to ``root``; ``copies`` are installed headers and their originals."""
         self.root = root
         self._root = PurePosixPath(root)
         self._copies = copies
@@ -184,8 +185,8 @@ class _Places:
     def _artifact(self, file: str) -> dict[str, str]:
         path = PurePosixPath(file)
         if path.is_relative_to(self._root):
-            return {"uri": quote(str(path.relative_to(self._root))), "uriBaseId": _ROOT}
-        return {"uri": _uri(file)}
+            return {"uri": quote(str(path.relative_to(self._root))), "uriBaseId": ROOT}
+        return {"uri": file_uri(file)}
 
 
 def _driver() -> dict[str, Any]:
@@ -209,7 +210,7 @@ def _driver() -> dict[str, Any]:
     }
 
 
-def _result(each: Details, places: _Places) -> dict[str, Any]:
+def _result(each: Details, places: Places) -> dict[str, Any]:
     tpc, nearest = each.tpc, each.nearest
     location: dict[str, Any] = {
         "physicalLocation": places.location(tpc.file, tpc.lineno, tpc.column, nearest.source_code),
@@ -267,7 +268,7 @@ def _message(each: Details) -> str:
     return f"{text}: {what} depends {by}{default}."
 
 
-def _step(step: PathStep, unit: LinkUnit, places: _Places) -> dict[str, Any]:
+def _step(step: PathStep, unit: LinkUnit, places: Places) -> dict[str, Any]:
     location: dict[str, Any] = {"message": {"text": step.what or step.step}}
     if step.file:
         location["physicalLocation"] = places.location(
@@ -297,7 +298,8 @@ def _common(roots: Sequence[str]) -> str:
     return os.path.commonpath(roots) if roots else "/"
 
 
-def _uri(path: str) -> str:
+def file_uri(path: str) -> str:
+    """The URI of an absolute path."""
     return "file://" + quote(path)
 
 

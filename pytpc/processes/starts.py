@@ -84,7 +84,7 @@ def read_starts(
         wanted: the names of plugins.
         on_progress: called with (files read, all files).
     """
-    launches, yamls = _files(packages)
+    launches, yamls = files_of(packages)
     found: list[Start] = []
     unread: dict[Path, str] = {}
     known: set[Path] = set()
@@ -134,6 +134,14 @@ def _joined(starts: Iterable[Start]) -> Iterator[Start]:
         yield replace(one, names=names, loads=loads)
 
 
+def loaded_by(node: LaunchNode) -> str:
+    """The full name of the node into which a nodelet or component is loaded; empty if none."""
+    words = node.args.split() if node.program == _NODELET else []
+    if words[:1] == ["load"] and len(words) > 2:
+        return _resolved(words[2], node.name)
+    return node.container
+
+
 def starts_of(trace: Trace) -> Iterator[Start]:
     """The nodes that a launch file starts, with the plugins that it loads into them."""
     loads: dict[str, set[str]] = {}
@@ -141,9 +149,9 @@ def starts_of(trace: Trace) -> Iterator[Start]:
     others: list[LaunchNode] = []
     for node in trace.nodes:
         words = node.args.split() if node.program == _NODELET else []
-        host, plugin = node.container, node.program
+        host, plugin = loaded_by(node), node.program
         if words[:1] == ["load"] and len(words) > 2:
-            host, plugin = _resolved(words[2], node.name), words[1]
+            plugin = words[1]
         if host:
             loads.setdefault(host, set()).add(plugin)
             loaded.setdefault(host, []).append(node)
@@ -242,7 +250,7 @@ def _resolved(name: str, node: str) -> str:
     return name if name.startswith("/") else f"{node.rpartition('/')[0]}/{name}"
 
 
-def _files(packages: Iterable[Package]) -> tuple[list[Path], list[Path]]:
+def files_of(packages: Iterable[Package]) -> tuple[list[Path], list[Path]]:
     """The launch files and the YAML files below the folders of packages, each sorted."""
     launches, yamls = set(), set()
     for package in packages:

@@ -81,18 +81,29 @@ class Places:
     def origins(self) -> dict[str, Origin]:
         """The origin of all that the launch file sets, by full name as in the launch file."""
         found: dict[str, Origin] = {}
-        for name, all_settings in self._trace.settings.items():
-            placed = [self._origin(name, setting) for setting in all_settings]
+        for name, placed in self.all_origins().items():
             earlier = tuple(dict.fromkeys(o.words() for o in placed[:-1] if o.path is not None))
             last = placed[-1]
-            # A key may stand twice in one file, too.
-            known = self._files.settings(last.path, 0) if last.kind == "yaml" and last.path else {}
-            twice = known.get(_joined(last.keys))
-            own = tuple(f"{last.path}:{n}" for n in (twice.earlier if twice is not None else ()))
+            own = tuple(f"{last.path}:{lineno}" for lineno in self.same_keys(last))
             found[name] = replace(
                 last, overridden=(*(e for e in earlier if e != last.words()), *own)
             )
         return found
+
+    def all_origins(self) -> dict[str, list[Origin]]:
+        """The origins of every value that a parameter is given, in this order: the last counts."""
+        return {
+            name: [self._origin(name, setting) for setting in all_settings]
+            for name, all_settings in self._trace.settings.items()
+        }
+
+    def same_keys(self, origin: Origin) -> tuple[int, ...]:
+        """The lines with the same keys in the YAML file of an origin, which it overrides."""
+        known = (
+            self._files.settings(origin.path, 0) if origin.kind == "yaml" and origin.path else {}
+        )
+        twice = known.get(_joined(origin.keys))
+        return () if twice is None else twice.earlier
 
     def _origin(self, name: str, setting: Mapping[str, Any]) -> Origin:
         if "file" not in setting:

@@ -1,0 +1,283 @@
+"""What is known of a robot for `lint`: the values of a launch file, and what its nodes read."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache
+from pathlib import Path
+
+from pytpc.conditions.parameter_calls import call_text
+from pytpc.conditions.source_texts import SourceTexts, source_texts
+from pytpc.lint.facts import Angle, Earlier, Facts, Node, NodeRead, Setting, last_part, own_part
+from pytpc.lint.finding import Spot
+from pytpc.processes.binaries import Libraries, literals, system_folders
+from pytpc.processes.process import Process, Processes
+from pytpc.processes.starts import loaded_by
+from pytpc.recording.declaration import Declared
+from pytpc.static.angles import angle_of
+from pytpc.static.link_unit import LinkUnit, ParameterRead
+from pytpc.static.parameters import DYNAMIC, resolved
+from pytpc.static.static_info import StaticInfo
+from pytpc.values.known import package_folder
+from pytpc.values.origin_places import Places
+from pytpc.values.origins import Origin
+from pytpc.values.recording import is_of_ros, leaves
+from pytpc.values.trace import LaunchNode, Trace
+
+_TABLES = ("XmlRpc", "map<", "unordered_map<", "dict")
+_PYTHON_ROS1 = ("rospy", "rosparam")
+_PREFIX = "get_parameters_by_prefix"
+_OF_SERVER = "dynamic_reconfigure"
+_READS = re.compile(rb"_ZNK?3ros(?:10NodeHandle\w{0,20}(?:[pP]aram)|5param)")
+_WORD = 8
+# `movabs` of x86-64 with eight letters that may begin a name.
+_MOVABS = re.compile(rb"[\x48\x49][\xb8-\xbf]([A-Za-z_/~][A-Za-z0-9_/]{7})")
+
+
+@dataclass(frozen=True)
+class Robot:
+    """The analysed code of a workspace, for as many launch files as are checked."""
+
+    static: StaticInfo
+    processes: Processes
+    declared: Sequence[Declared]
+    env: Mapping[str, str] = field(default_factory=dict)
+
+    @cached_property
+    def _programs(self) -> Mapping[str, list[Process]]:
+        found = defaultdict(list)
+        for process in self.processes.found:
+            found[process.program].append(process)
+        return found
+
+    @cached_property
+    def _units(self) -> Mapping[str, list[LinkUnit]]:
+        """The link units by the programs that they are, and by their full names."""
+        found = defaultdict(list)
+        for unit in self.static.units:
+            names = {unit.link_unit}
+            if unit.script is not None:
+                names |= {unit.script.rpartition("/")[2], unit.link_unit.rpartition("/")[2]}
+            for name in names:
+                found[f"{unit.package}/{name}"].append(unit)
+        return found
+
+    @cached_property
+    def _libraries(self) -> Libraries:
+        return Libraries(folders=system_folders(self.env, ()))
+
+    @cached_property
+    def set_by_code(self) -> frozenset[str]:
+        """The last parts of the names that code of the workspace sets."""
+        roots = {unit.source_root for unit in self.static.units}
+        return frozenset[str]().union(*(source_texts(root).sets for root in sorted(roots)))
+
+    @cached_property
+    def _read_places(self) -> frozenset[tuple[str, int]]:
+        """The files and lines of all known reads."""
+        return frozenset(
+            (unit.absolute(read.file), read.lineno)
+            for unit in self.static.units
+            for read in unit.parameters
+        )
+
+    def facts(self, trace: Trace, wanted: frozenset[str] | None = None) -> Facts:
+        """The facts of one launch file.
+
+        Args:
+            trace: what it sets and starts.
+            wanted: names that are looked for in libraries; None: those that it sets.
+        """
+        settings = settings_of(trace)
+        names = frozenset(last_part(one.name) for one in settings) if wanted is None else wanted
+        nodes = [self.node(node, trace.nodes, names) for node in trace.nodes]
+        return Facts(settings, nodes, self.declared, self.set_by_code)
+
+    def node(self, node: LaunchNode, beside: Sequence[LaunchNode], wanted: frozenset[str]) -> Node:
+        """What a node reads."""
+        host = loaded_by(node)
+        started = next((one for one in beside if one.name == host), None) if host else node
+        program = f"{node.package}/{node.program}"
+        if started is None:
+            return Node(node.name, program, unjudged=f"{host}, which loads a node, is not started")
+        run = f"{started.package}/{started.program}"
+        processes = self._processes(run, started.name)
+        units = [self._unit(one.full_name) for process in processes for one in process.units]
+        units += [unit for unit in self._units.get(run, ()) if unit not in units]
+        known = [unit for unit in units if unit is not None]
+        why = self._why_unjudged(run, processes, units)
+        reads = [read for unit in known for read in self._reads(unit, node.name)]
+        texts = self._texts(known)
+        hosts = [process.host for process in processes if process.host is not None]
+        texts |= self._of_libraries(tuple(hosts), wanted)
+        return Node(node.name, program, tuple(dict.fromkeys(reads)), why, texts)
+
+    def _processes(self, program: str, node: str) -> list[Process]:
+        found = self._programs.get(program, [])
+        own = [one for one in found if any(start.node == node for start in one.starts)]
+        return own or list(found)
+
+    def _unit(self, full_name: str) -> LinkUnit | None:
+        found = self._units.get(full_name, ())
+        return found[0] if found else None
+
+    def _why_unjudged(
+        self, program: str, processes: Sequence[Process], units: Sequence[LinkUnit | None]
+    ) -> str:
+        """Why not all reads of a program are known; empty where they are."""
+        if not units:
+            return f"{program} was not analysed"
+        if any(unit is None for unit in units):
+            return f"a library of {program} was not analysed"
+        for unit in units:
+            assert unit is not None
+            if unit.trouble is not None:
+                return f"{program} was not analysed as a whole"
+            if source_texts(unit.source_root).reads_all:
+                return f"{program} reads whole namespaces"
+        failed = next((one for one in processes if one.outcome and one.outcome.failure), None)
+        return "" if failed is None else f"{program} was not analysed as a whole"
+
+    def _reads(self, unit: LinkUnit, node: str) -> Iterator[NodeRead]:
+        texts = source_texts(unit.source_root)
+        for read in unit.parameters:
+            found = self._read(unit, read, node, texts)
+            yield found
+            if found.is_reconfigured:
+                yield from self._fields(unit, found)
+
+    @staticmethod
+    def _read(unit: LinkUnit, read: ParameterRead, node: str, texts: SourceTexts) -> NodeRead:
+        path = unit.absolute(read.file) if read.file else ""
+        said = call_text(path, read.lineno, read.api, read.function)
+        name = _full_name(read, node)
+        angle: Angle = angle_of(unit, read)
+        if not angle and texts.converts(own_part(name)):
+            angle = "degrees"
+        return NodeRead(
+            name,
+            read.api,
+            read.type,
+            read.default,
+            Spot(path, read.lineno),
+            _is_table(read),
+            said.needed,
+            None if said.deprecation is None else Spot(path, said.deprecation),
+            said.at_start and _OF_SERVER not in read.api,
+            angle,
+        )
+
+    def _fields(self, unit: LinkUnit, read: NodeRead) -> Iterator[NodeRead]:
+        """The fields beside one that dynamic_reconfigure hands over: its server reads them all."""
+        package = package_folder(Path(read.spot.path)) if read.spot.path else None
+        before, _, end = read.name.rpartition("/")
+        declared = [one for one in self.declared if one.package == str(package)]
+        files = {one.place.rpartition(":")[0] for one in declared if one.parameter == end}
+        for one in declared:
+            if one.place.rpartition(":")[0] in files and one.parameter != end:
+                name = f"{before}/{one.parameter}"
+                yield replace(read, name=name, type=_type_of(one), default=one.default, angle="")
+
+    def _texts(self, units: Iterable[LinkUnit]) -> frozenset[str]:
+        """Texts in the sources of units beside which no known read stands."""
+        roots = {(unit.source_root, unit.is_python) for unit in units}
+        found = (
+            source_texts(root).unread(self._read_places, python=is_python)
+            for root, is_python in sorted(roots)
+        )
+        return frozenset[str]().union(*found)
+
+    def _of_libraries(self, hosts: tuple[Path, ...], wanted: frozenset[str]) -> frozenset[str]:
+        """Those of the wanted names that a library of the system may read."""
+        found: set[str] = set()
+        ours = {unit.path for process in self.processes.found for unit in process.units}
+        for binary in self._libraries.all_of(hosts):
+            if binary.path not in ours and _reads_parameters(binary.path):
+                found |= literals(binary.path) & wanted
+                starts = _in_code(binary.path)
+                found |= {one for one in wanted if one[:_WORD] in starts}
+        return frozenset(found)
+
+
+@lru_cache(maxsize=256)
+def _in_code(path: Path) -> frozenset[str]:
+    """The texts of eight letters that the code of a library has as numbers.
+
+    A compiler builds a short text in place, eight bytes at a time, and has no literal of it then.
+    """
+    found = _MOVABS.findall(path.read_bytes())
+    return frozenset(text.decode("ascii") for text in found)
+
+
+@lru_cache(maxsize=1024)
+def _reads_parameters(path: Path) -> bool:
+    """Whether a library of ROS 1 calls what reads parameters, by the names of its symbols."""
+    return _READS.search(path.read_bytes()) is not None
+
+
+def _full_name(read: ParameterRead, node: str) -> str:
+    """The full name of what a node reads, with ``<dynamic>`` for what is not known."""
+    if read.api.startswith(("rclcpp", "rclpy")):
+        name = read.name
+        if name.startswith("/"):
+            return name
+        name = name.lstrip("~/")
+        return f"{node}/{name}"
+    name = read.name
+    if name.startswith(DYNAMIC):
+        # Its first part may be any namespace.
+        return f"/{name}"
+    return resolved(name, node).rstrip("/") or "/"
+
+
+def _is_table(read: ParameterRead) -> bool:
+    """Whether a call may read all parameters below a name."""
+    if read.api.startswith(_PYTHON_ROS1):
+        return not isinstance(read.default, bool | int | float | str)
+    return _PREFIX in read.api or any(word in read.type for word in _TABLES)
+
+
+def _type_of(one: Declared) -> str:
+    return {"str": "std::string"}.get(one.type, one.type)
+
+
+def settings_of(trace: Trace) -> list[Setting]:
+    """The values that a launch file sets, without those of roslaunch itself."""
+    if trace.placed is not None:
+        return [_placed(origin) for name, origin in trace.placed.items() if not is_of_ros(name)]
+    places = Places(trace)
+    found: list[Setting] = []
+    for name, placed in places.all_origins().items():
+        last = placed[-1]
+        earlier = [
+            Earlier(_spot(one), one.value, True)
+            for one in placed[:-1]
+            if one.path is not None and _spot(one) != _spot(last)
+        ]
+        path = str(last.path)
+        earlier += [
+            Earlier(Spot(path, lineno), is_same_map=True) for lineno in places.same_keys(last)
+        ]
+        for full, value in leaves(name, last.value):
+            if last.path is not None and not is_of_ros(full):
+                found.append(Setting(full, value, _spot(last), tuple(earlier)))
+    return found
+
+
+def _placed(origin: Origin) -> Setting:
+    earlier = []
+    for words in origin.overridden:
+        path, _, lineno = words.rpartition(":")
+        spot = Spot(path, int(lineno)) if path and lineno.isdigit() else Spot(words)
+        earlier.append(Earlier(spot))
+    return Setting(origin.name, origin.value, _spot(origin), tuple(earlier))
+
+
+def _spot(origin: Origin) -> Spot:
+    """The line of an origin, in the source where it is an installed copy."""
+    path = origin.source or origin.path
+    return Spot("" if path is None else os.path.normpath(path), origin.lineno or 0)

@@ -1,0 +1,114 @@
+"""Texts in the sources of a package that may be names of parameters."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+from pytpc.base.source_bytes import source_bytes
+from pytpc.conditions.parameter_calls import without_comments
+
+_CPP = (".cpp", ".cc", ".cxx", ".c", ".h", ".hpp", ".hh", ".hxx", ".ipp", ".tpp")
+_TEXT = re.compile(r"\"((?:\\.|[^\"\\\n]){1,120})\"|'((?:\\.|[^'\\\n]){1,120})'")
+_NAME = re.compile(r"[~/]?[A-Za-z][\w./-]*")
+_SETS = re.compile(r"\b(?:setParam|set_param|param::set|set_parameters?)\s*\(\s*[\"']([\w~/.]+)")
+# Calls that read, or list, all parameters of a namespace.
+_READS_ALL = re.compile(
+    r"\b(?:getParamNames|get_param_names|list_parameters|get_parameter_overrides"
+    r"|automatically_declare_parameters_from_overrides)\b"
+)
+_DEGREES = re.compile(
+    r"from_degrees|\bradians\s*\(|deg2rad|DEG2RAD|to_?rad(?:ians)?\s*\(|deg_to_rad|degToRad"
+    r"|(?:M_PI|math\.pi|\bpi|PI)\s*/\s*180|/\s*180(?:\.0*)?f?\s*\*\s*(?:M_PI|math\.pi|pi)",
+    re.IGNORECASE,
+)
+_NOT_SOURCES = frozenset({"build", "devel", "install", "log", "test", "tests", "__pycache__"})
+_LARGEST = 4 << 20
+_BESIDE = 2
+_FIRST_LINE = 200
+
+
+@dataclass(frozen=True, slots=True)
+class SourceTexts:
+    """The texts of a package.
+
+    ``texts`` has for each text, without its namespace, its places: file and line. ``sets`` are the
+    names, without namespaces, of parameters that code sets. ``reads_all`` says that code reads all
+    parameters of a namespace. ``converted`` are lines in which an angle in degrees is converted.
+    """
+
+    texts: dict[str, list[tuple[str, int]]]
+    sets: frozenset[str]
+    reads_all: bool
+    converted: tuple[str, ...]
+
+    def unread(self, reads: Collection[tuple[str, int]], *, python: bool) -> frozenset[str]:
+        """The texts in the files of a language at other places than beside one of these reads."""
+        beside = {(file, line + step) for file, line in reads for step in range(-1, _BESIDE + 1)}
+        return frozenset(
+            text
+            for text, places in self.texts.items()
+            if any(
+                place not in beside for place in places if place[0].endswith(_CPP) is not python
+            )
+        )
+
+    def converts(self, name: str) -> bool:
+        """Whether what has the name of a parameter is converted from degrees somewhere."""
+        word = re.compile(rf"(?<![A-Za-z0-9]){re.escape(name.rstrip('_'))}(?![A-Za-z0-9])")
+        return any(word.search(line) for line in self.converted)
+
+
+@lru_cache(maxsize=256)
+def source_texts(package: str) -> SourceTexts:
+    """Read the sources in the folder of a package; those of its tests are left out."""
+    texts: dict[str, list[tuple[str, int]]] = {}
+    sets: set[str] = set()
+    converted: list[str] = []
+    reads_all = False
+    for path in _sources(package):
+        lines = _read(path)
+        for lineno, line in enumerate(lines, start=1):
+            for one, other in _TEXT.findall(line):
+                text = one or other
+                if _NAME.fullmatch(text):
+                    texts.setdefault(_last(text), []).append((str(path), lineno))
+            sets.update(_last(name) for name in _SETS.findall(line))
+            reads_all = reads_all or _READS_ALL.search(line) is not None
+            if _DEGREES.search(line):
+                converted.append(line)
+    return SourceTexts(texts, frozenset(sets), reads_all, tuple(converted))
+
+
+def _last(name: str) -> str:
+    return name.rstrip("/").rpartition("/")[2].lstrip("~")
+
+
+def _sources(package: str) -> Iterator[Path]:
+    for folder, below, files in os.walk(package):
+        below[:] = sorted(b for b in below if not b.startswith(".") and b not in _NOT_SOURCES)
+        for name in sorted(files):
+            path = Path(folder, name)
+            if name.endswith((*_CPP, ".py")) or ("." not in name and _is_python(path)):
+                yield path
+
+
+def _is_python(path: Path) -> bool:
+    try:
+        return path.is_file() and b"python" in path.open("rb").readline(_FIRST_LINE)
+    except OSError:
+        return False
+
+
+def _read(path: Path) -> Sequence[str]:
+    try:
+        if not path.is_file() or path.stat().st_size > _LARGEST:
+            return ()
+        text = source_bytes(path).decode("utf-8", "replace")
+    except OSError:
+        return ()
+    return (without_comments(text) if path.name.endswith(_CPP) else text).splitlines()

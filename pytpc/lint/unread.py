@@ -1,0 +1,133 @@
+"""Values that no node reads, with the names that were most likely meant.
+
+A value counts as read by no node only where all is known of the nodes that could read it: those in
+whose namespace it is, or else all nodes of the robot.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from pytpc.base.closest import closest
+from pytpc.base.wording import listed, plain
+from pytpc.lint.facts import Facts, Node, NodeRead, Setting, Unjudged, last_part, own_part
+from pytpc.lint.finding import Evidence, Finding, Spot
+from pytpc.static.parameters import DYNAMIC
+
+# What ROS's own libraries read in every node.
+_OF_ROS = frozenset(
+    {"use_sim_time", "tcp_keepalive", "enable_statistics", "start_type_description_service"}
+    | {"rosdistro", "rosversion", "run_id", "robot_description", "robot_description_semantic"}
+)
+_QOS = "qos_overrides"
+_MOST_NODES = 3
+ANY = "a node puts the names of parameters together"
+NO_NODE = "no node of that namespace is started"
+TEXT = "the name stands in the sources, and what is done with it is not followed"
+
+
+class Unread(NamedTuple):
+    """The findings, the parameters that cannot be judged, and the lines that nodes may read.
+
+    One line of YAML may set a value in several namespaces, of which one is enough.
+    """
+
+    findings: list[Finding]
+    unjudged: Unjudged
+    used: frozenset[Spot]
+
+
+def unread(facts: Facts) -> Unread:
+    """Find the values that no node reads."""
+    found: list[tuple[Setting, list[Node]]] = []
+    reasons = defaultdict(set)
+    used = set()
+    for setting in facts.settings:
+        why = ""
+        reads = [read for _, read in facts.readers(setting.name)]
+        if reads and not _is_of_ros(setting.name) and all(_is_anything(read) for read in reads):
+            why = ANY
+        elif reads or _is_of_ros(setting.name):
+            used.add(setting.spot)
+            continue
+        concerned = _concerned(facts, setting)
+        why = why or _why_unjudged(setting, concerned)
+        if why:
+            reasons[why].add(setting.name)
+            used.add(setting.spot)
+        else:
+            found.append((setting, concerned))
+    findings = [_finding(facts, one, nodes) for one, nodes in found if one.spot not in used]
+    unjudged = Unjudged({why: frozenset(names) for why, names in reasons.items()})
+    return Unread(findings, unjudged, frozenset(used))
+
+
+def _is_anything(read: NodeRead) -> bool:
+    """Whether the last part of its name is not known, so that it may be of any parameter."""
+    return DYNAMIC in last_part(read.name)
+
+
+def _is_of_ros(name: str) -> bool:
+    return last_part(name) in _OF_ROS or _QOS in name or name.startswith("/roslaunch/")
+
+
+def _concerned(facts: Facts, setting: Setting) -> list[Node]:
+    """The nodes that could read a value: its owners, or else all in the namespace around it."""
+    owners = facts.owners(setting.name)
+    if owners:
+        return owners
+    around = setting.name.rpartition("/")[0]
+    below = [node for node in facts.nodes if node.name.startswith(f"{around}/")]
+    return below or list(facts.nodes)
+
+
+def _why_unjudged(setting: Setting, concerned: list[Node]) -> str:
+    """Why it is not known whether a value is read; empty where it is known."""
+    if not concerned:
+        return NO_NODE
+    unknown = next((node for node in concerned if node.unjudged), None)
+    if unknown is not None:
+        return unknown.unjudged
+    parts = {last_part(setting.name), own_part(setting.name)}
+    if any(not parts.isdisjoint(node.texts) for node in concerned):
+        return TEXT
+    return ""
+
+
+def _finding(facts: Facts, setting: Setting, concerned: list[Node]) -> Finding:
+    names = [node.name for node in concerned]
+    who = f"{names[0]} does not read" if len(names) == 1 else "no node reads"
+    meant = _meant(facts, setting, concerned)
+    text = f"{who} {plain(setting.name)}"
+    evidence = [Evidence(f"{plain(read.name)} is read", read.spot) for read in meant[:1]]
+    if meant:
+        shown = listed([plain(read.name) for read in meant], _MOST_NODES)
+        same = last_part(meant[0].name) == last_part(setting.name)
+        text += f"; it would be read as {shown}" if same else f"; did you mean {shown}?"
+    elif len(names) > 1 and not facts.owners(setting.name):
+        near = closest(setting.name.rpartition("/")[0], [node.name for node in facts.nodes])
+        if near and setting.name.count("/") > 1:
+            text += f"; did you mean the node {plain(near[0])}?"
+    return Finding("unread", "warning", setting.spot, setting.name, text, tuple(evidence))
+
+
+def _meant(facts: Facts, setting: Setting, concerned: list[Node]) -> list[NodeRead]:
+    """The reads that were most likely meant: of the same name elsewhere, or of one like it."""
+    end = last_part(setting.name)
+    mine = [read for node in concerned for read in node.reads]
+    others = [read for node in facts.nodes if node not in concerned for read in node.reads]
+    same = _once(read for read in mine if last_part(read.name) == end)
+    same = same or _once(read for read in others if last_part(read.name) == end and read.is_exact)
+    if same:
+        return same
+    unset = {read.name: read for read in mine if not facts.is_set(read.name) and not read.is_table}
+    return [unset[name] for name in closest(setting.name, unset)]
+
+
+def _once(reads: Iterator[NodeRead]) -> list[NodeRead]:
+    found: dict[str, NodeRead] = {}
+    for read in reads:
+        found.setdefault(read.name, read)
+    return [found[name] for name in sorted(found)]

@@ -1,0 +1,144 @@
+"""The facts that lint is given: of nodes, params files, launch files and recordings."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from launch_samples import environment, make_package, needs_roslaunch
+
+from pytpc.api.building import analyse
+from pytpc.api.lint_facts import Robot, settings_of
+from pytpc.api.lint_mission import recorded
+from pytpc.base.paths import project_root
+from pytpc.lint.check import check
+from pytpc.lint.facts import Facts
+from pytpc.lint.finding import Finding
+from pytpc.processes.process import NONE
+from pytpc.python_analysis.rules_file import load_rules
+from pytpc.static.static_info import StaticInfo
+from pytpc.values.ros2_arguments import origins_in_params
+from pytpc.values.trace import LaunchNode, Trace, trace_launch
+
+EXAMPLE = project_root() / "examples/recorded_mission"
+RCLPY = """\
+#!/usr/bin/env python3
+import rclpy
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from std_msgs.msg import Float64
+
+class Guard(Node):
+    def __init__(self):
+        super().__init__('guard')
+        self.declare_parameter('limits.max', 1.5)
+        self.declare_parameter('limits.min', 0.5)
+        self.declare_parameter('beams', 4)
+        self.declare_parameter('port', Parameter.Type.STRING)
+        self.out = self.create_publisher(Float64, 'out', 1)
+        if self.get_parameter('limits.max').value > 1.0:
+            self.out.publish(Float64())
+
+rclpy.init()
+rclpy.spin(Guard())
+"""
+PARAMS = """\
+guard:
+  ros__parameters:
+    limits:
+      max: 1
+      mni: 0.5
+      min: 2.5
+    beams: 4
+"""
+
+
+def robot_at(folder: Path) -> Robot:
+    """The package ``robot`` in this folder, with one node."""
+    folder.mkdir()
+    (folder / "package.xml").write_text("<package><name>robot</name></package>")
+    (folder / "guard.py").write_text(RCLPY)
+    (folder / "guard.py").chmod(0o755)
+    return Robot(analyse([folder], load_rules()), NONE, ())
+
+
+def findings(facts: Facts) -> list[Finding]:
+    return list(check(facts).findings)
+
+
+def test_a_node_of_ros2(tmp_path: Path):
+    params = tmp_path / "params.yaml"
+    params.write_text(PARAMS)
+    nodes = [LaunchNode("/guard", "robot", "guard.py", tmp_path / "x.launch.py", 3, 0)]
+    trace = Trace(None, {}, {}, nodes, {}, placed=origins_in_params(params))
+    found = findings(robot_at(tmp_path / "robot").facts(trace))
+    assert [(one.spot.lineno, one.kind, one.severity, one.text) for one in found] == [
+        (4, "type", "error",
+         "/guard/limits.max is 1, an int, and the node refuses all but a double"),
+        (5, "unread", "warning",
+         "/guard does not read /guard/limits.mni"),
+        (6, "limits", "warning", "/guard/limits.min is 2.5, above max, which is 1"),
+        (13, "unset", "error", "nothing sets /guard/port, and /guard fails without it"),
+    ]  # fmt: skip
+
+
+@needs_roslaunch
+def test_the_values_of_a_launch_file(tmp_path: Path):
+    launch = make_package(tmp_path)
+    trace = trace_launch(environment(tmp_path), launch, {})
+    found = {one.name: one for one in settings_of(trace)}
+    again = found["/again"]
+    assert (again.value, again.spot.lineno) == (2, 28)
+    assert [(one.value, one.spot.lineno) for one in again.earlier] == [(1, 27)]
+    limit = found["/mission/limit"]
+    assert (limit.value, limit.spot) == (0.058, (str(tmp_path / "robot/config/extra.yaml"), 2))
+    [earlier] = limit.earlier
+    assert (earlier.value, earlier.spot.lineno, earlier.is_same_map) == (0.035, 3, False)
+    # The program sets this one itself when it starts, behind the <param>.
+    assert found["/leg/step"].value == 0.5
+    assert found["/left/arm/joints/elbow"].value == 1.0
+
+
+@needs_roslaunch
+def test_a_key_that_one_map_has_twice(tmp_path: Path):
+    launch = make_package(tmp_path)
+    (tmp_path / "robot/config/extra.yaml").write_text("mission:\n  limit: 1\n  limit: 2\n")
+    trace = trace_launch(environment(tmp_path), launch, {})
+    [one] = [one for one in settings_of(trace) if one.name == "/mission/limit"]
+    twins = [earlier for earlier in one.earlier if earlier.is_same_map]
+    assert [earlier.spot.lineno for earlier in twins] == [2]
+
+
+def test_a_node_that_was_not_analysed(tmp_path: Path):
+    robot = robot_at(tmp_path / "robot")
+    other = LaunchNode("/amcl", "amcl", "amcl", tmp_path, 1, 0)
+    assert robot.node(other, [other], frozenset()).unjudged == "amcl/amcl was not analysed"
+    nodelet = LaunchNode("/n", "nodelet", "nodelet", tmp_path, 1, 0, args="load a/B manager")
+    assert robot.node(nodelet, [nodelet], frozenset()).unjudged == (
+        "/manager, which loads a node, is not started"
+    )
+
+
+# By the columns of events.parquet: of `faces.size() >= max_faces_` all 646 were false, with at most
+# one face of six, and the first and the last are 77.08 s apart. `max_aspect_ratio` was false 110
+# times, and true 489 times.
+def test_a_recording():
+    static = StaticInfo.load(EXAMPLE / "static.json")
+    found = recorded([EXAMPLE], static)
+    assert found.changes == ()
+    by_name = {one.parameter: one for one in found.crossings}
+    assert len(by_name) == len(found.crossings)
+    faces = by_name["/face_detector/max_faces"]
+    assert (faces.evaluations, faces.result, faces.threshold, faces.nearest) == (646, False, 6, 5)
+    assert faces.seconds == pytest.approx(77.08)
+    assert "/face_detector/max_aspect_ratio" not in by_name
+
+
+@pytest.mark.parametrize("times", [1, 2])
+def test_recordings_are_added_up(times: int):
+    static = StaticInfo.load(EXAMPLE / "static.json")
+    found = recorded([EXAMPLE] * times, static)
+    once = recorded([EXAMPLE], static)
+    assert [one.evaluations for one in found.crossings] == [
+        times * one.evaluations for one in once.crossings
+    ]

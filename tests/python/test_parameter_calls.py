@@ -1,0 +1,143 @@
+"""What the source beside a read says: needed, deprecated, only at the start."""
+
+from pathlib import Path
+
+import pytest
+
+from pytpc.conditions.parameter_calls import CallText, call_text
+from pytpc.conditions.source_texts import source_texts
+
+CPP = """\
+Guard::Guard() {
+  ros::NodeHandle nh("~");
+  nh.param("rate", rate_, 5.0);
+  if (!nh.getParam("frame", frame_)) {
+    ROS_FATAL("no frame");
+    return;
+  }
+  if (!nh.getParam("size", size_))
+    size_ = 3;
+  if (nh.getParam("old_limit", limit_)) {
+    ROS_WARN("old_limit is deprecated, use limit");
+  }
+  nh.param("limit", limit_, 0.5);
+  timer_ = nh.createTimer(period, [this, nh](const ros::TimerEvent&) {
+    nh.getParam("gain", gain_);
+  });
+  for (const auto& name : names_) {
+    nh.getParam("weight", weight_);
+  }
+}
+void Guard::onScan() {
+  nh_.getParam("threshold", threshold_);
+  // This is deprecated.
+}
+"""
+PYTHON = """\
+import rospy
+class Guard:
+    def __init__(self):
+        self.rate = rospy.get_param('~rate', 5.0)
+        self.port = rospy.get_param('~port')
+        try:
+            self.host = rospy.get_param('~host')
+        except KeyError:
+            self.host = ''
+        rospy.Subscriber('scan', Scan, self.on_scan)
+        while not rospy.is_shutdown():
+            self.gain = rospy.get_param('~gain', 1.0)
+    def on_scan(self, scan):
+        self.limit = rospy.get_param('~limit', 1.0)
+        rospy.logwarn('limit is deprecated')
+"""
+
+
+@pytest.fixture
+def package(tmp_path: Path) -> Path:
+    (tmp_path / "guard.cpp").write_text(CPP)
+    (tmp_path / "guard.py").write_text(PYTHON)
+    source_texts.cache_clear()
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("lineno", "expected"),
+    [
+        (3, CallText(at_start=True)),
+        (4, CallText("reports", at_start=True)),
+        (8, CallText(at_start=True)),
+        (10, CallText(deprecation=11, at_start=True)),
+        (13, CallText(at_start=True)),
+        (15, CallText()),
+        (18, CallText()),
+    ],
+)
+def test_cpp(package: Path, lineno: int, expected: CallText):
+    found = call_text(f"{package}/guard.cpp", lineno, "ros::NodeHandle::param", "Guard::Guard()")
+    assert found == expected
+
+
+def test_cpp_in_a_callback(package: Path):
+    api, function = "ros::NodeHandle::getParam", "Guard::onScan()"
+    assert call_text(f"{package}/guard.cpp", 22, api, function) == CallText()
+
+
+@pytest.mark.parametrize(
+    ("text", "needed"),
+    [
+        ('auto x = node->declare_parameter<double>("x");', "fails"),
+        ('node->declare_parameter("x", rclcpp::PARAMETER_DOUBLE);', "fails"),
+        ('node->declare_parameter<double>("x", 0.5);', ""),
+        ('node->declare_parameter("x", 0.5);', ""),
+    ],
+)
+def test_declared_without_a_default(tmp_path: Path, text: str, needed: str):
+    file = tmp_path / "a.cpp"
+    file.write_text(text)
+    found = call_text(str(file), 1, "rclcpp::Node::declare_parameter", "main(int, char**)")
+    assert found.needed == needed
+
+
+@pytest.mark.parametrize(
+    ("lineno", "expected"),
+    [
+        (4, CallText(at_start=True)),
+        (5, CallText("fails", at_start=True)),
+        (7, CallText(at_start=True)),
+        (12, CallText()),
+        (14, CallText(deprecation=15)),
+    ],
+)
+def test_python(package: Path, lineno: int, expected: CallText):
+    assert call_text(f"{package}/guard.py", lineno, "rospy.get_param", "") == expected
+
+
+def test_a_place_that_is_not_there(tmp_path: Path):
+    assert call_text(f"{tmp_path}/gone.cpp", 3, "ros::NodeHandle::param", "main()") == CallText()
+    assert call_text(f"{tmp_path}/gone.py", 3, "rospy.get_param", "") == CallText()
+
+
+def test_texts_that_stand_beside_no_read(package: Path):
+    (package / "other.hpp").write_text(
+        'nh.setParam("made", 1);\nx = angles::from_degrees(tilt_);\n'
+    )
+    found = source_texts(str(package))
+    cpp, python = f"{package}/guard.cpp", f"{package}/guard.py"
+    assert "rate" in found.unread([], python=True)
+    # "port" stands beside the read in line 4, "gain" beside none; "scan" is in Python alone.
+    assert found.unread([(python, 4)], python=True) >= {"scan", "gain"}
+    assert {"rate", "port"}.isdisjoint(found.unread([(python, 4)], python=True))
+    left = found.unread([(cpp, 3), (cpp, 4)], python=False)
+    assert {"rate", "frame", "scan"}.isdisjoint(left)
+    assert {"size", "made"} <= left
+    assert found.sets == {"made"}
+    assert not found.reads_all
+    assert found.converts("tilt")
+    assert not found.converts("til")
+
+
+def test_code_that_reads_all(tmp_path: Path):
+    (tmp_path / "a.cpp").write_text("nh.getParamNames(names);\n")
+    (tmp_path / "test").mkdir()
+    source_texts.cache_clear()
+    assert source_texts(str(tmp_path)).reads_all
