@@ -49,6 +49,7 @@ STATICS: Mapping[str, Sequence[str]] = {
     "explain": (INPUT, "~limit"),
     "export": (INPUT, "--html", "out.html"),
     "fix": (str(EXAMPLE), "--static", INPUT),
+    "keep": ("--folder", ".", "--static", INPUT),
     "list": (INPUT,),
     "rank": (str(EXAMPLE), "--static", INPUT),
     "report": (str(EXAMPLE), "--static", INPUT, "-o", "out.html"),
@@ -73,6 +74,7 @@ FOLDERS: Mapping[str, Sequence[str]] = {
     "survey": (INPUT,),
 }
 GRAPHS: Mapping[str, Sequence[str]] = {
+    "keep": ("--on-marks", "-o", "out"),
     "record": ("-o", "out"),
     "relay": (),
     "sink": (),
