@@ -3,15 +3,16 @@
 
 #include "Runtime.h"
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cstdlib>
 
 namespace tpc {
 
-const char *const ConfigNames[8] = {"sink",       "policy",      "period",
-                                    "site_cap",   "process_cap", "folder",
-                                    "file_limit", "file_reserve"};
+const char *const ConfigNames[10] = {
+    "sink",   "policy",     "period",       "site_cap", "process_cap",
+    "folder", "file_limit", "file_reserve", "ring",     "ring_budget"};
 
 static constexpr const char *SinkNames[] = {"auto", "rosout", "topic", "file",
                                             "off"};
@@ -25,7 +26,14 @@ bool Config::operator==(const Config &Other) const {
          PeriodNs == Other.PeriodNs && SiteCap == Other.SiteCap &&
          ProcessCap == Other.ProcessCap && Folder == Other.Folder &&
          FileLimitMiB == Other.FileLimitMiB &&
-         FileReserveMiB == Other.FileReserveMiB;
+         FileReserveMiB == Other.FileReserveMiB && RingNs == Other.RingNs &&
+         RingBudgetMiB == Other.RingBudgetMiB;
+}
+
+uint64_t Config::segmentBytes() const {
+  // One extent of 1 MiB, and the header.
+  constexpr uint64_t Least = (uint64_t(1) << 20) + 4096;
+  return std::max((RingBudgetMiB << 20) / Segments, Least);
 }
 
 Config Config::filledIn() const {
@@ -103,6 +111,18 @@ bool parse(Config &C, const std::string &Name, const std::string &Value,
     return count(C.FileLimitMiB, Value, Why);
   if (Name == "file_reserve")
     return count(C.FileReserveMiB, Value, Why);
+  if (Name == "ring") {
+    double Minutes;
+    Why = "it must be a number of minutes, 0 or from 0.05 to 10080";
+    if (!read<double>(Minutes, Value, 0, 10080) || (Minutes && Minutes < 0.05))
+      return false;
+    C.RingNs = static_cast<uint64_t>(Minutes * 60e9);
+    return true;
+  }
+  if (Name == "ring_budget") {
+    Why = "it must be a whole number of MiB from 4";
+    return read<uint64_t>(C.RingBudgetMiB, Value, 4, uint64_t(1) << 24);
+  }
   if (Name == "folder") {
     C.Folder = Value;
     return true;

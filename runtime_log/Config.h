@@ -24,6 +24,8 @@ enum class Policy : uint8_t {
 };
 
 struct Config {
+  /// A ring has about so many files.
+  static constexpr uint64_t Segments = 8;
   /// Of the numbers: what is usual for the policy.
   static constexpr uint64_t Usual = UINT64_MAX;
 
@@ -35,8 +37,14 @@ struct Config {
   std::string Folder;            ///< empty: $ROS_HOME/tpc, else ~/.ros/tpc
   uint64_t FileLimitMiB = 4096;  ///< per file; 0: no limit
   uint64_t FileReserveMiB = 256; ///< kept free on the disk
+  uint64_t RingNs = 0;           ///< what a ring of files keeps; 0: no ring
+  uint64_t RingBudgetMiB = 64;   ///< of all files of the ring of this process
 
   bool operator==(const Config &Other) const;
+
+  bool hasRing() const { return RingNs != 0; }
+  /// The share of one file in what the ring of this process may take.
+  uint64_t segmentBytes() const;
 
   /// With everything that was not chosen filled in.
   Config filledIn() const;
@@ -47,7 +55,7 @@ struct Config {
 /// well. The others say where files go and how large they grow: everybody who
 /// reaches the ROS master can set a parameter, so the environment alone
 /// decides.
-extern const char *const ConfigNames[8];
+extern const char *const ConfigNames[10];
 constexpr size_t ParameterNames = 5;
 
 /// The variable of the environment for a setting.

@@ -47,10 +47,10 @@ static int64_t rosTime() {
 /// changed. Slots in the file can be read even if the process is killed.
 static void makePair(Thread &T, const Site &S) {
   LogFile *File = SlotsHome.load(std::memory_order_acquire);
-  if (T.PairsHome != File) {
+  if (T.PairsHome.load(std::memory_order_relaxed) != File) {
     // The helper thread takes the contents of the old slots.
     std::fill(T.Pairs, T.Pairs + T.PairCount, nullptr);
-    T.PairsHome = File;
+    T.PairsHome.store(File, std::memory_order_relaxed);
   }
   if (S.Number > T.PairCount) {
     uint32_t Count = std::max<uint32_t>(64, T.PairCount * 2);
@@ -110,7 +110,7 @@ static void beginSlot(Thread &T, const Site &S, Slot &In, uint32_t Now) {
   layout::Summary &K = In.Kept;
   // This thread stopped inside an old period for so long that the helper
   // continued without it.
-  take(In, *NowSink.load(), Clock::now(), rosTime());
+  take(In, summarySink(), Clock::now(), rosTime());
   const Beginning &B = Beginnings[Now & 3];
   K = {};
   In.Begun = 0;
@@ -128,8 +128,9 @@ static void beginSlot(Thread &T, const Site &S, Slot &In, uint32_t Now) {
 static void edge(Thread &T, Site &S, Slot &In, const Report &R) {
   std::lock_guard<std::mutex> Guard(S.Lock);
   int8_t Last = S.Last.load(std::memory_order_relaxed);
+  stateAgain(T, S, R, Last);
   if (Last == R.Result)
-    return; // another thread was first
+    return; // another thread was first, or the file is new
   S.Last.store(R.Result ? 1 : 0, std::memory_order_relaxed);
   bool IsFlop = Last >= 0;
   In.Kept.Flops += IsFlop;
@@ -138,18 +139,34 @@ static void edge(Thread &T, Site &S, Slot &In, const Report &R) {
   // Under the lock, so that flops are recorded in the order in which they
   // happened.
   emit(T, S, R, layout::EdgeBit);
+  S.Stated = {true, R.Result, R.Outcome, R.Compared, R.Threshold};
+}
+
+void stateAgain(Thread &T, Site &S, const Report &R, int8_t Last) {
+  LogFile *File = RingRuns.load() ? NowFile.load() : nullptr;
+  if (!File || Last < 0 || S.StatedIn.load(std::memory_order_relaxed) == File)
+    return;
+  auto &Stated = S.Stated;
+  if (Last == R.Result && (!Stated.IsKnown || Stated.Result == R.Result))
+    Stated = {true, R.Result, R.Outcome, R.Compared, R.Threshold};
+  if (Stated.IsKnown)
+    File->write(T, S,
+                layout::EdgeBit | layout::bits(Stated.Result, Stated.Outcome),
+                Stated.Compared, Stated.Threshold);
+  S.StatedIn.store(File, std::memory_order_relaxed);
 }
 
 void edges(Thread &T, Site &S, const Report &R) {
   if (S.Number > T.PairCount || !T.Pairs[S.Number - 1] ||
-      T.PairsHome != SlotsHome.load(std::memory_order_relaxed))
+      T.PairsHome.load(std::memory_order_relaxed) !=
+          SlotsHome.load(std::memory_order_relaxed))
     makePair(T, S);
   uint32_t Now = NowPeriod.load(std::memory_order_acquire);
   Slot &In = T.Pairs[S.Number - 1]->Of[Now & 1];
   layout::Summary &K = In.Kept;
   if (!K.Count || K.Period != Now)
     beginSlot(T, S, In, Now);
-  if (S.Last.load(std::memory_order_relaxed) != R.Result)
+  if (S.Last.load(std::memory_order_relaxed) != R.Result || isNewToRing(S))
     edge(T, S, In, R);
   uint32_t Bits = layout::bits(R.Result, R.Outcome);
   if (std::isfinite(R.Compared - R.Threshold)) {
@@ -182,15 +199,30 @@ static void sleepMs(long Ms) {
   nanosleep(&T, nullptr);
 }
 
+void publishToThreads() {
+  if (!HasBarrier ||
+      syscall(SYS_membarrier, MEMBARRIER_CMD_PRIVATE_EXPEDITED, 0, 0))
+    sleepMs(1);
+}
+
+bool holdsTouchedSlots(LogFile &File) {
+  for (Thread *T : allThreads()) {
+    std::lock_guard<std::mutex> Guard(T->Lock);
+    for (const std::vector<Slot *> &Touched : T->Touched)
+      for (const Slot *In : Touched)
+        if (File.holds(In))
+          return true;
+  }
+  return false;
+}
+
 /// Waits until no thread is inside the old period. Leaves out threads that take
 /// longer than the patience: their slots are taken later.
 static std::vector<Thread *> withoutLate(std::vector<Thread *> Threads) {
   // A thread marks itself as inside by a plain store before it reads the
   // period. The barrier makes either this store visible here, or the new period
   // there.
-  if (!HasBarrier ||
-      syscall(SYS_membarrier, MEMBARRIER_CMD_PRIVATE_EXPEDITED, 0, 0))
-    sleepMs(1);
+  publishToThreads();
   int64_t Until = Clock::steady() + Patience;
   auto IsLate = [&](Thread *T) {
     uint32_t Seen = T->Inside.load(std::memory_order_acquire);

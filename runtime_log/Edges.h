@@ -72,7 +72,8 @@ void edges(Thread &T, Site &S, const Report &R);
                                                double Compared,
                                                double Threshold) {
   if (S.Number > T.PairCount ||
-      T.PairsHome != SlotsHome.load(std::memory_order_relaxed) ||
+      T.PairsHome.load(std::memory_order_relaxed) !=
+          SlotsHome.load(std::memory_order_relaxed) ||
       S.Last.load(std::memory_order_relaxed) != Result)
     return false;
   SlotPair *Pair = T.Pairs[S.Number - 1];
@@ -87,6 +88,19 @@ void edges(Thread &T, Site &S, const Report &R);
   add(In, Bits, Compared, Threshold);
   return true;
 }
+
+/// At the first evaluation of \p S in a file of a ring, writes the outcome that
+/// readers know: the files before may be gone. It is that of \p R, or if \p R
+/// is a flop, the one before, with the values that it was last reported with.
+/// \p Last is the last outcome. The site is locked.
+void stateAgain(Thread &T, Site &S, const Report &R, int8_t Last);
+
+/// Whether a slot in \p File is still to be taken.
+bool holdsTouchedSlots(LogFile &File);
+
+/// After this, each thread is seen inside its report, or sees what the calling
+/// thread has stored.
+void publishToThreads();
 
 /// Call once in each process, before the first evaluation.
 void prepareEdges();

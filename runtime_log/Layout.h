@@ -29,7 +29,7 @@ struct Header {
   uint32_t Counter;
   uint64_t NotRecorded;
   uint32_t Parent;
-  uint32_t Spare;
+  uint32_t Segment; ///< its number in a ring, from 1; 0: it is no ring's
   char Node[256];
   char Host[256];
   char Program[1024];

@@ -242,6 +242,8 @@ void LightSite::inspectOutcome(Thread &T, const Report &R) {
     ++Pairs;
     Turns += Last != R.Result;
   }
+  if (isNewToRing(Of))
+    stateAgain(T, Of, R, Last);
   if (Last == R.Result)
     return;
   Of.Last.store(R.Result ? 1 : 0, std::memory_order_relaxed);
@@ -260,6 +262,7 @@ void LightSite::inspectOutcome(Thread &T, const Report &R) {
   }
   Told = R.Result;
   emit(T, Of, R, layout::EdgeBit);
+  Of.Stated = {true, R.Result, R.Outcome, R.Compared, R.Threshold};
 }
 
 void LightSite::inspect(Thread &T, const Report &R) {
@@ -286,6 +289,8 @@ void LightSite::catchUp() {
        {Of.Key.c_str(), Result, Kept.Compared, Kept.Threshold,
         (Kept.What & layout::OutcomeBit) != 0},
        layout::EdgeBit);
+  Of.Stated = {true, Result, (Kept.What & layout::OutcomeBit) != 0,
+               Kept.Compared, Kept.Threshold};
 }
 
 void LightSite::weigh() {
@@ -438,6 +443,19 @@ void beginLight(bool Forgets) {
     L.clear();
     L.BeginSteady = Began.Steady;
     L.BeginRos = Began.Ros;
+  });
+}
+
+void lookAgain() {
+  forEachLight([](LightSite &L) {
+    // If it is in use, it is inspected now; its outcome is said later.
+    if (!L.lock())
+      return;
+    Unlocker Guard{L};
+    L.settle();
+    SiteWords *At = L.Words.load(std::memory_order_relaxed);
+    for (int Result = 0; Result < 2; ++Result)
+      L.Counts[Result].set(At->Left[Result], 0);
   });
 }
 

@@ -45,6 +45,9 @@ struct SummaryLimit {
 /// With \p IsEnd, there is no limit, and what has no sample is counted, too.
 void flushLight(Sink &To, bool IsEnd, const SummaryLimit &Limit);
 
+/// The next evaluation of each site is inspected: a ring has a new file.
+void lookAgain();
+
 /// The object of \p S is gone: what is made at its address counts elsewhere.
 void releaseWords(const Site &S);
 

@@ -15,8 +15,8 @@ std::atomic<bool> TimeIsSimulated{false};
 
 static constexpr size_t LongestKey = 4096;
 
-LogFile *LogFile::open(const Config &C, std::string &Why) {
-  std::optional<NewFile> New = NewFile::create(C, Why);
+LogFile *LogFile::open(const Config &C, SegmentName *Of, std::string &Why) {
+  std::optional<NewFile> New = NewFile::create(C, Of, Why);
   if (!New)
     return nullptr;
   auto *File = new LogFile(C, *New);
@@ -44,15 +44,16 @@ void LogFile::setNode(const char *Name) {
 }
 
 bool LogFile::nextChunk(Thread &T) {
-  if (T.File == this && T.End) {
+  const LogFile *Before = T.File.load(std::memory_order_relaxed);
+  if (Before == this && T.End) {
     T.Written += RecordsOfChunk;
     Records.fetch_add(RecordsOfChunk, std::memory_order_relaxed);
     Space.finish(T.End);
-  } else if (T.File != this) {
+  } else if (Before != this) {
     T.Written = 0;
     T.Simulated = -1;
   }
-  T.File = this;
+  T.File.store(this, std::memory_order_relaxed);
   char *Chunk = Space.newChunk(Reports, T.Number, T.Written, T.Tid);
   if (!Chunk) {
     T.Next = T.End = nullptr;
@@ -75,7 +76,8 @@ bool LogFile::simulated(Thread &T, int64_t Now) {
 
 void LogFile::writeLate(Thread &T, const Site &S, uint32_t Bits, int64_t Steady,
                         int64_t Simulated, double Compared, double Threshold) {
-  if ((T.File != this || T.Next == T.End) && !nextChunk(T))
+  if ((T.File.load(std::memory_order_relaxed) != this || T.Next == T.End) &&
+      !nextChunk(T))
     return;
   if (Simulated != T.Simulated) {
     T.Simulated = Simulated;

@@ -26,17 +26,19 @@ extern std::atomic<bool> TimeIsSimulated;
 
 class LogFile {
 public:
-  /// Creates a file in the folder of \p C; if that fails, returns null and sets
-  /// \p Why. A file object is never deleted: threads may write to it at any
-  /// time.
-  static LogFile *open(const Config &C, std::string &Why);
+  /// Creates a file in the folder of \p C, the next one of the ring \p Of
+  /// unless that is null; if that fails, returns null and sets \p Why. Threads
+  /// may write to a file at any time: only a ring deletes one, when none does
+  /// any more.
+  static LogFile *open(const Config &C, SegmentName *Of, std::string &Why);
 
   /// Writes one report if no slow path is needed; otherwise does nothing and
   /// returns false.
   [[gnu::always_inline]] bool writeAtOnce(Thread &T, const Site &S,
                                           uint32_t Bits, double Compared,
                                           double Threshold) {
-    if (T.File != this || T.Next == T.End || T.Simulated != -1 ||
+    if (T.File.load(std::memory_order_relaxed) != this || T.Next == T.End ||
+        T.Simulated != -1 ||
         S.WrittenTo.load(std::memory_order_relaxed) != this ||
         TimeIsSimulated.load(std::memory_order_relaxed))
       return false;
@@ -49,7 +51,8 @@ public:
   /// more.
   bool write(Thread &T, Site &S, uint32_t Bits, double Compared,
              double Threshold) {
-    if ((T.File != this || T.Next == T.End) && !nextChunk(T))
+    if ((T.File.load(std::memory_order_relaxed) != this || T.Next == T.End) &&
+        !nextChunk(T))
       return false;
     if (S.WrittenTo.load(std::memory_order_relaxed) != this)
       announce(S);
@@ -86,6 +89,13 @@ public:
   bool isStopped() const { return Space.isStopped(); }
   /// No more chunks are given out; the unused end of the file is cut off.
   void close() { Space.close(); }
+  /// After close(): nobody uses the file any more.
+  void unmap() { Space.unmap(); }
+  uint64_t usedBytes() { return Space.usedBytes(); }
+  uint64_t diskBytes() { return Space.diskBytes(); }
+  bool holds(const void *Address) { return Space.holds(Address); }
+  void goOnFrom(LogFile &Before) { Space.goOnFrom(Before.Space); }
+  std::pair<dev_t, ino_t> identity() const { return Space.identity(); }
 
   const std::string &path() const { return Space.path(); }
   uint64_t records() const { return Records.load(std::memory_order_relaxed); }

@@ -13,11 +13,17 @@ char tpc_reporting = 1;
 namespace tpc {
 
 void emit(Thread &T, Site &S, const Report &R, uint32_t Bits) {
-  if (!ReportsToFile.load(std::memory_order_acquire))
+  const bool IsFile = ReportsToFile.load(std::memory_order_acquire);
+  if (!IsFile)
     NowSink.load(std::memory_order_acquire)->take(R);
-  else if (LogFile *File = NowFile.load(std::memory_order_acquire))
-    File->write(T, S, Bits | layout::bits(R.Result, R.Outcome), R.Compared,
-                R.Threshold);
+  if (!IsFile && !RingRuns.load(std::memory_order_acquire))
+    return;
+  LogFile *File = NowFile.load(std::memory_order_acquire);
+  if (!File)
+    return;
+  File->write(T, S, Bits | layout::bits(R.Result, R.Outcome), R.Compared,
+              R.Threshold);
+  S.StatedIn.store(File, std::memory_order_relaxed);
 }
 
 bool isOverCap(Site &S, bool IsFlop) {

@@ -25,7 +25,10 @@ static constexpr uint32_t MostAhead = 64; ///< in extents
 
 MappedFile::MappedFile(const Config &C, const NewFile &File)
     : Path(File.Path), Descriptor(File.Descriptor),
-      LimitBytes(C.FileLimitMiB << 20), ReserveBytes(C.FileReserveMiB << 20) {
+      LimitBytes((File.Segment ? C.RingBudgetMiB : C.FileLimitMiB) << 20),
+      ReserveBytes(C.FileReserveMiB << 20),
+      AheadBytes(File.Segment ? C.segmentBytes() : UINT64_MAX),
+      Segment(File.Segment) {
   struct stat Its;
   if (!fstat(Descriptor, &Its)) {
     Device = Its.st_dev;
@@ -113,6 +116,7 @@ bool MappedFile::grow(std::string &Why) {
     H->Steady = Clock::steady();
     H->Real = Clock::real();
     H->Counter = Clock::usesCounter();
+    H->Segment = Segment;
     gethostname(H->Host, sizeof(H->Host) - 1);
     programPath().copy(H->Program, sizeof(H->Program) - 1);
     std::memcpy(H->Magic, "TPCLOG1\n", sizeof(H->Magic));
@@ -170,6 +174,8 @@ void MappedFile::stop(const std::string &Why) {
   if (Stopped.exchange(true))
     return;
   Header->State = layout::Stopped;
+  if (Segment)
+    return wakeHelper(); // which begins another one, or says that it cannot
   warn(Path + ": " + Why + "; recording stops, and the program continues");
 }
 
@@ -208,6 +214,7 @@ void MappedFile::lookAhead() {
           E.Base = nullptr;
         }
       if (IsClosed || isStopped() ||
+          HeaderBytes + (Extents.size() + 1) * ExtentBytes > AheadBytes ||
           Extents.size() * ChunksOfExtent - Used >=
               size_t(Ahead) * ChunksOfExtent)
         break;
@@ -251,6 +258,41 @@ void MappedFile::close() {
     ::close(Descriptor);
   if (!isStopped())
     Header->State = layout::Closed;
+}
+
+void MappedFile::unmap() {
+  std::lock_guard<std::mutex> Guard(Chunks);
+  for (Extent &E : Extents)
+    if (E.Base)
+      munmap(E.Base, ExtentBytes);
+  Extents = {};
+  munmap(Header, HeaderBytes);
+  Header = nullptr;
+}
+
+uint64_t MappedFile::usedBytes() {
+  std::lock_guard<std::mutex> Guard(Chunks);
+  return HeaderBytes + uint64_t(Used) * ChunkBytes;
+}
+
+uint64_t MappedFile::diskBytes() {
+  std::lock_guard<std::mutex> Guard(Chunks);
+  return HeaderBytes + (IsClosed ? uint64_t(Used) * ChunkBytes
+                                 : uint64_t(Extents.size()) * ExtentBytes);
+}
+
+bool MappedFile::holds(const void *Address) {
+  const char *At = static_cast<const char *>(Address);
+  std::lock_guard<std::mutex> Guard(Chunks);
+  for (const Extent &E : Extents)
+    if (E.Base && At >= E.Base && At < E.Base + ExtentBytes)
+      return true;
+  return false;
+}
+
+void MappedFile::goOnFrom(MappedFile &Before) {
+  std::lock_guard<std::mutex> Guard(Before.Chunks);
+  Ahead = Before.Ahead;
 }
 
 } // namespace tpc

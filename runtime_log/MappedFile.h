@@ -17,6 +17,7 @@
 #include <mutex>
 #include <string>
 #include <sys/types.h>
+#include <utility>
 #include <vector>
 
 namespace tpc {
@@ -40,6 +41,20 @@ public:
   void lookAhead();
   /// No more chunks are given out; the unused end of the file is cut off.
   void close();
+  /// After close(): nobody uses the file any more, and its memory is given
+  /// back.
+  void unmap();
+
+  /// Bytes that the chunks that were given out take, with the header.
+  uint64_t usedBytes();
+  /// Bytes that the file takes on the disk.
+  uint64_t diskBytes();
+  /// Whether \p Address is in one of its extents.
+  bool holds(const void *Address);
+  /// Allocates ahead as much as \p Before did.
+  void goOnFrom(MappedFile &Before);
+  /// Which file it is, whatever its name: device and inode.
+  std::pair<dev_t, ino_t> identity() const { return {Device, Inode}; }
 
   /// Whether it has stopped because the disk is full or a limit is reached.
   bool isStopped() const { return Stopped.load(std::memory_order_relaxed); }
@@ -66,6 +81,9 @@ private:
   dev_t Device = 0;
   ino_t Inode = 0;
   const uint64_t LimitBytes, ReserveBytes;
+  /// Space is allocated ahead up to this size.
+  const uint64_t AheadBytes;
+  const uint32_t Segment;
   layout::Header *Header = nullptr;
 
   std::mutex Chunks; ///< for the next six

@@ -32,6 +32,10 @@ extern std::atomic<LogFile *> NowFile;
 extern std::atomic<Sink *> NowSink;
 /// Whether the chosen sink is the file.
 extern std::atomic<bool> ReportsToFile;
+/// Whether a ring is written: as the chosen sink, or beside it.
+extern std::atomic<bool> RingRuns;
+/// Where summaries go: to the chosen sink, and to the ring.
+Sink &summarySink();
 /// In a second of real time.
 extern std::atomic<uint64_t> SiteCap, ProcessCap;
 extern Meter ProcessMeter;
@@ -55,6 +59,13 @@ bool isOverCap(Site &S, bool IsFlop);
 
 /// Passes \p R to the chosen sink; \p Bits are those of the records in a file.
 void emit(Thread &T, Site &S, const Report &R, uint32_t Bits);
+
+/// Whether the file of the ring does not have the outcome of \p S yet.
+inline bool isNewToRing(const Site &S) {
+  return RingRuns.load(std::memory_order_relaxed) &&
+         S.StatedIn.load(std::memory_order_relaxed) !=
+             NowFile.load(std::memory_order_relaxed);
+}
 
 /// Of a report in a file: the policy has the evaluation in a summary, too.
 inline uint32_t edgeBit() {

@@ -81,7 +81,13 @@ static std::string nameOfProcess() {
   return Name.empty() ? "process" : Name.substr(0, 100);
 }
 
-std::optional<NewFile> NewFile::create(const Config &C, std::string &Why) {
+static std::string fourDigits(uint32_t Number) {
+  std::string Text = std::to_string(Number);
+  return std::string(Text.size() < 4 ? 4 - Text.size() : 0, '0') + Text;
+}
+
+std::optional<NewFile> NewFile::create(const Config &C, SegmentName *Of,
+                                       std::string &Why) {
   std::string Folder = folderOf(C);
   if (Folder.empty()) {
     Folder = "/tmp/tpc-" + std::to_string(geteuid());
@@ -91,12 +97,16 @@ std::optional<NewFile> NewFile::create(const Config &C, std::string &Why) {
     Why = Folder + ": " + errorText(errno);
     return std::nullopt;
   }
-  std::string Stem = Folder + "/" + nameOfProcess() + "-" +
-                     std::to_string(getpid()) + "-" +
-                     std::to_string(Clock::real() / 1'000'000'000);
+  std::string Stem =
+      Folder + "/" + nameOfProcess() + "-" + std::to_string(getpid()) + "-" +
+      std::to_string(Of ? Of->Began : Clock::real() / 1'000'000'000);
   for (int Try = 1;; ++Try) {
-    std::string Path =
-        Stem + (Try > 1 ? "-" + std::to_string(Try) : "") + ".tpc";
+    const uint32_t Segment = Of ? Of->Next++ : 0;
+    std::string Path = Stem +
+                       (Of        ? "-" + fourDigits(Segment)
+                        : Try > 1 ? "-" + std::to_string(Try)
+                                  : "") +
+                       ".tpc";
     // Processes in two containers can have the same number and so the same
     // path. The process that creates the temporary file first gets it.
     std::string New = Path + ".new";
@@ -114,7 +124,7 @@ std::optional<NewFile> NewFile::create(const Config &C, std::string &Why) {
       Why = Path + ": " + errorText(IsTaken ? EEXIST : errno);
       return std::nullopt;
     }
-    return NewFile{std::move(Path), Descriptor};
+    return NewFile{std::move(Path), Descriptor, Segment};
   }
 }
 

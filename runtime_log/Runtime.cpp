@@ -5,6 +5,7 @@
 #include "Light.h"
 #include "Modes.h"
 #include "ReadNames.h"
+#include "Ring.h"
 #include "Ros.h"
 
 #include <algorithm>
@@ -41,6 +42,7 @@ std::atomic<Mode> NowMode{Mode::NotStarted};
 std::atomic<LogFile *> NowFile{nullptr};
 std::atomic<Sink *> NowSink{nullptr};
 std::atomic<bool> ReportsToFile{false};
+std::atomic<bool> RingRuns{false};
 Sites *TheSites = nullptr;
 std::atomic<uint64_t> SiteCap{0}, ProcessCap{0};
 Meter ProcessMeter;
@@ -59,18 +61,44 @@ public:
                R.Compared, R.Threshold);
   }
   void take(const Summary &S) override {
-    if (LogFile *F = NowFile.load())
-      F->write(S);
+    LogFile *F = NowFile.load();
+    if (!F)
+      return;
+    F->announce(sites()[S.Site]);
+    F->write(S);
   }
   void take(const Dropped &D) override {
-    if (LogFile *F = NowFile.load())
-      F->write(D);
+    LogFile *F = NowFile.load();
+    if (!F)
+      return;
+    if (D.Site)
+      F->announce(sites()[D.Site]);
+    F->write(D);
   }
   void take(const ReadName &N) override {
     if (LogFile *F = NowFile.load())
       F->write(N);
   }
   bool forgets() const override { return false; }
+};
+
+/// The chosen sink, with the ring beside it. Reports take the way of emit().
+class BesideSink final : public Sink {
+public:
+  void take(const Report &R) override { chosen().take(R); }
+  void take(const Summary &S) override { both(S); }
+  void take(const Dropped &D) override { both(D); }
+  void take(const ReadName &N) override { both(N); }
+  bool forgets() const override { return chosen().forgets(); }
+
+private:
+  static Sink &chosen() { return *NowSink.load(); }
+  template <typename What> void both(const What &W) {
+    chosen().take(W);
+    File.take(W);
+  }
+
+  FileSink File;
 };
 
 class NoSink final : public Sink {
@@ -102,6 +130,9 @@ private:
   Runtime();
 
   static Sink &sinkOf(SinkKind K);
+  LogFile *openFile(const Config &C);
+  LogFile *fileInUse() const;
+  void turnRing(int64_t Now);
   Config possible(const Config &C);
   void tellOfFile();
   bool choose(const Config &C);
@@ -146,6 +177,9 @@ private:
   int64_t ClockSecond = Second;
   bool HasToldOfCaps = false;
   bool HasToldOfFile = false; ///< while Changing is locked
+  bool HasToldOfRing = false; ///< the same
+  Ring Segments;              ///< the same
+  int64_t NextSegment = 0;    ///< not before, if one could not be begun
   std::atomic<uint64_t> DroppedInAll{0};
 };
 
@@ -206,7 +240,7 @@ void Runtime::start() {
   // nothing to do. A thread that ends makes glibc unmap the stacks of the
   // threads that are missing in the child, and the libraries of ROS, at their
   // end, look for their threads there.
-  if (Held.Sink == SinkKind::File || !forkedFromNode())
+  if (fileInUse() || !forkedFromNode())
     startHelper();
 }
 
@@ -233,24 +267,27 @@ void Runtime::tellOfFile() {
 
 /// Makes log_one follow \p C; false if its file cannot be created.
 bool Runtime::choose(const Config &C) {
-  if (C.Sink == SinkKind::File) {
+  const bool HasRing = C.hasRing() && C.Sink != SinkKind::Off;
+  if (C.Sink == SinkKind::File || HasRing) {
     if (LogFile *F = NowFile.load(); !F || F->isStopped()) {
-      std::string Why;
-      LogFile *File = LogFile::open(C, Why);
-      if (!File) {
-        warn(Why + "; no reports are written to a file");
+      if (LogFile *File = openFile(C)) {
+        if (LogFile *Old = NowFile.exchange(File); Old && HasRing)
+          Segments.leave(*Old, Clock::steady());
+        else if (Old)
+          Old->close();
+        ReadNames::all().startAgain();
+      } else if (C.Sink == SinkKind::File) {
         return false;
       }
-      if (LogFile *Old = NowFile.exchange(File))
-        Old->close();
-      ReadNames::all().startAgain();
     }
-    NowFile.load()->writePolicy(C.filledIn());
+    if (LogFile *F = NowFile.load())
+      F->writePolicy(C.filledIn());
   }
   Filled = C.filledIn();
   setCaps(C);
   ReportsToFile = C.Sink == SinkKind::File;
-  SlotsHome = ReportsToFile ? NowFile.load() : nullptr;
+  RingRuns = HasRing;
+  SlotsHome = ReportsToFile || HasRing ? NowFile.load() : nullptr;
   Sink *Old = NowSink.exchange(&sinkOf(C.Sink));
   bool IsCapped = SiteCap || ProcessCap;
   bool IsLight = Filled.Policy == Policy::Light && C.Sink != SinkKind::Off;
@@ -274,6 +311,53 @@ bool Runtime::choose(const Config &C) {
   else
     Old->end();
   return true;
+}
+
+/// A new file, of the ring if there is one; null if that fails, with a warning.
+LogFile *Runtime::openFile(const Config &C) {
+  std::string Why;
+  LogFile *File = C.hasRing() ? Segments.next(C, NowFile.load(), Why)
+                              : LogFile::open(C, nullptr, Why);
+  if (!File)
+    warn(Why + "; no reports are written to a file");
+  HasToldOfRing = !File;
+  return File;
+}
+
+/// The file that reports go to, as the chosen sink or beside it.
+LogFile *Runtime::fileInUse() const {
+  return ReportsToFile || RingRuns ? NowFile.load() : nullptr;
+}
+
+/// Begins the next file of the ring if it is time.
+void Runtime::turnRing(int64_t Now) {
+  constexpr int64_t AgainNs = 10 * Second;
+  if (!RingRuns)
+    return;
+  Segments.settle(Held, Now);
+  LogFile *Old = NowFile.load();
+  if (Now < NextSegment || (Old && !Segments.isDue(Held, *Old, Now)))
+    return;
+  // The slots of this period are in the old file.
+  if (Filled.Policy == Policy::Edges)
+    flush(/*IsEnd=*/true);
+  std::string Why;
+  LogFile *New = Segments.next(Held, Old, Why);
+  if (!New) {
+    NextSegment = Now + AgainNs;
+    if (!std::exchange(HasToldOfRing, true))
+      warn(Why + "; the ring stops until a file can be written");
+    return;
+  }
+  HasToldOfRing = false;
+  New->writePolicy(Filled);
+  NowFile = New;
+  SlotsHome = New;
+  ReadNames::all().startAgain();
+  if (Filled.Policy == Policy::Light)
+    lookAgain();
+  if (Old)
+    Segments.leave(*Old, Now);
 }
 
 bool Runtime::apply(const Config &Wanted) {
@@ -313,6 +397,18 @@ std::string Runtime::status() {
   if (LogFile *F = NowFile.load(); F && Held.Sink == SinkKind::File)
     Text += std::string(" state=") + (F->isStopped() ? "stopped" : "open") +
             " file=" + F->path();
+  if (LogFile *F = NowFile.load(); F && RingRuns) {
+    auto [Files, Bytes] = Segments.size();
+    char Minutes[32];
+    snprintf(Minutes, sizeof(Minutes), "%g",
+             static_cast<double>(Held.RingNs) / 60e9);
+    Text += std::string(" ring=") + Minutes +
+            " ring_files=" + std::to_string(Files + 1) + " ring_mib=" +
+            std::to_string((Bytes + F->diskBytes() + (1 << 20) - 1) >> 20) +
+            "/" + std::to_string(Held.RingBudgetMiB) +
+            (F->isStopped() ? " ring_state=stopped" : " ring_state=open") +
+            " ring_folder=" + F->path().substr(0, F->path().rfind('/'));
+  }
   std::string More = NowSink.load()->status();
   return More.empty() ? Text : Text + " " + More;
 }
@@ -394,7 +490,8 @@ int64_t Runtime::runDue(int64_t Now) {
   // ROS knows it only some time after its start, and a program may change it.
   TimeIsSimulated = rosTimeIsSimulated();
   std::lock_guard<std::mutex> Guard(Changing);
-  LogFile *File = Held.Sink == SinkKind::File ? NowFile.load() : nullptr;
+  turnRing(Now);
+  LogFile *File = fileInUse();
   bool HasPeriods = isSummarised();
   if (File) {
     File->lookAhead();
@@ -415,11 +512,11 @@ int64_t Runtime::runDue(int64_t Now) {
   bool IsPolled = S.isPolled();
   if (IsPolled && Now >= NextPoll) {
     // Whoever reads a report should know by then whose it is.
-    ReadNames::all().give(S, Now);
+    ReadNames::all().give(summarySink(), Now);
     S.poll();
     NextPoll = Now + PollNs;
   }
-  bool HasSeconds = File || HasPeriods || SiteCap || ProcessCap ||
+  bool HasSeconds = File || RingRuns || HasPeriods || SiteCap || ProcessCap ||
                     (Held.Sink != SinkKind::Off && ReadNames::all().any());
   if (HasSeconds && Now >= NextSecond) {
     eachSecond();
@@ -432,6 +529,8 @@ int64_t Runtime::runDue(int64_t Now) {
     Next = std::min(Next, NextPoll);
   if (HasSeconds)
     Next = std::min(Next, NextSecond);
+  if (RingRuns)
+    Next = std::min(Next, std::max(Segments.dueAt(Held), NextSegment));
   return Next;
 }
 
@@ -443,7 +542,7 @@ bool Runtime::isSummarised() const {
 void Runtime::flush(bool IsEnd) {
   if (!isSummarised())
     return;
-  Sink &S = *NowSink.load();
+  Sink &S = summarySink();
   if (Filled.Policy == Policy::Edges)
     return flushEdges(S, /*All=*/IsEnd);
   SummaryLimit Limit;
@@ -498,10 +597,10 @@ void Runtime::eachSecond() {
   Clock::adjust();
   followClock();
   giveLate();
-  if (Held.Sink == SinkKind::File)
-    NowFile.load()->sync();
+  if (LogFile *F = fileInUse())
+    F->sync();
   accountForDrops();
-  ReadNames::all().give(*NowSink.load(), Clock::steady());
+  ReadNames::all().give(summarySink(), Clock::steady());
 }
 
 /// Threads may have been inside the sink that was left.
@@ -511,7 +610,7 @@ void Runtime::giveLate() {
 }
 
 void Runtime::accountForDrops() {
-  Sink &S = *NowSink.load();
+  Sink &S = summarySink();
   auto Account = [&](const char *Key, uint32_t Number, DropCount &D,
                      DropReason Why) {
     uint64_t Count = D.Count.exchange(0), Flops = D.Flops.exchange(0);
@@ -571,13 +670,14 @@ void Runtime::end() {
   flush(/*IsEnd=*/true);
   if (Held.Sink != SinkKind::Off) {
     accountForDrops();
-    ReadNames::all().give(S, Clock::steady());
+    ReadNames::all().give(summarySink(), Clock::steady());
   }
   giveLate();
   S.end();
   rosEnd(/*IsInterrupted=*/false);
   if (LogFile *F = NowFile.load())
     F->close();
+  Segments.end();
 }
 
 //===----------------------------------------------------------------------===//
@@ -613,6 +713,9 @@ void Runtime::afterFork(bool IsChild) {
     sites()[Number].Last = -1;
   NowFile = nullptr;
   SlotsHome = nullptr;
+  Segments.forget();
+  for (uint32_t Number = 1; Number <= sites().size(); ++Number)
+    sites()[Number].StatedIn = nullptr;
   IsStarted = HelperRuns = false;
   IsAwake = false;
   NowMode = Mode::NotStarted;
@@ -624,6 +727,12 @@ void Runtime::afterFork(bool IsChild) {
 //===----------------------------------------------------------------------===//
 // Entry points
 //===----------------------------------------------------------------------===//
+
+Sink &summarySink() {
+  // Never destroyed: threads report until the process ends.
+  static auto &Beside = *new BesideSink;
+  return RingRuns && !ReportsToFile ? Beside : *NowSink.load();
+}
 
 Config current() { return Runtime::of().current(); }
 bool apply(const Config &C) { return Runtime::of().apply(C); }

@@ -77,6 +77,13 @@ struct Site {
   uint64_t Head[2] = {0, 0}; ///< the first 16 bytes of the key
   /// The file that contains the key under its number.
   std::atomic<const LogFile *> WrittenTo{nullptr};
+  /// The file of a ring in which its outcome was said, and what was last
+  /// reported with it.
+  std::atomic<const LogFile *> StatedIn{nullptr};
+  struct {
+    bool IsKnown, Result, Outcome;
+    double Compared, Threshold;
+  } Stated{};
   const uint32_t Number; ///< from 1
   const bool IsShort;    ///< the key has fewer than 16 bytes
   /// The last outcome of the predicate: -1 before the first evaluation.

@@ -26,7 +26,7 @@ struct Thread {
   layout::Record *Next = nullptr;
   layout::Record *End = nullptr;
   /// The file that contains both.
-  LogFile *File = nullptr;
+  std::atomic<LogFile *> File{nullptr};
   /// Odd while the thread reports.
   std::atomic<uint32_t> Inside{0};
   uint32_t Number = 0;    ///< from 1
@@ -38,7 +38,7 @@ struct Thread {
   SlotPair **Pairs = nullptr;
   uint32_t PairCount = 0;
   /// The file that contains them; null: memory.
-  const LogFile *PairsHome = nullptr;
+  std::atomic<const LogFile *> PairsHome{nullptr};
   uint64_t Tid = 0;
   /// The slots in use, of even and of odd periods.
   std::vector<layout::Slot *> Touched[2];

@@ -21,7 +21,7 @@ from pytpc.ingest.file_counts import FileCounter
 from pytpc.python_runtime.config import NAMES
 from pytpc.ros.caller_env import with_callers
 from pytpc.ros.mission_run import DEFAULT_TOPICS, MissionRun, Progress, RecordOptions
-from pytpc.ros.node_start import STATIC, mission_env, without_python
+from pytpc.ros.node_start import STATIC, files_folder, mission_env, without_python
 from pytpc.ros.ros1.launch_files import find_launch
 from pytpc.ros.ros1.record_mission import record_graph, run_mission
 from pytpc.ros.ros2.found_programs import find_in_package, find_program
@@ -43,7 +43,7 @@ _ONE_LAUNCH = "a launch file is run by itself, with NAME:=VALUE alone; leave out
 _LAUNCH_OF_ROS2 = (".py", ".launch.xml", ".yaml", ".yml")
 __all__ = ["DEFAULT_TOPICS", "MissionRun", "Progress", "RecordOptions"]
 __all__ += ["NodeFiles", "node_files", "record_launch", "record_ros2", "record_running"]
-__all__ += ["sink_settings"]
+__all__ += ["files_folder", "sink_settings"]
 __all__ += ["is_of_ros2", "package_of_launch", "why_no_origins"]
 
 
@@ -282,9 +282,10 @@ def why_no_origins(folder: Path) -> str:
 def sink_settings(env: Mapping[str, str]) -> dict[str, str]:
     """The settings of sinks in ``env``, all that a mission's nodes get of TPC's variables there.
 
-    A relative folder becomes absolute, as the nodes run elsewhere.
+    A relative folder becomes absolute, as the nodes run elsewhere. A mission that is recorded needs
+    no ring: it would keep the reports twice, and lose those of its beginning.
     """
-    names = (f"TPC_{name.upper()}" for name in NAMES)
+    names = (f"TPC_{name.upper()}" for name in NAMES if not name.startswith("ring"))
     settings = {name: env[name] for name in names if env.get(name)}
     if "TPC_FOLDER" in settings:
         settings["TPC_FOLDER"] = str(Path(settings["TPC_FOLDER"]).absolute())
@@ -304,10 +305,5 @@ def node_files(since_ns: int) -> NodeFiles:
     A running robot's nodes write to a folder of their own, not to that of the recording
     (docs/reference/runtime.md).
     """
-    folder = Path(f"/tmp/tpc-{os.geteuid()}")
-    if home := os.environ.get("HOME"):
-        folder = Path(home) / ".ros/tpc"
-    if ros_home := os.environ.get("ROS_HOME"):
-        folder = Path(ros_home) / "tpc"
-    folder = Path(os.environ.get("TPC_FOLDER") or folder)
+    folder = files_folder(os.environ)
     return NodeFiles(folder, FileCounter(folder, since_ns).count().files)

@@ -14,14 +14,29 @@ from pytpc.base.shell_words import SHELLS, EnvChange
 from pytpc.build.nodes_env import nodes_env, with_devel_space, without_devel_space
 from pytpc.cli.arguments import JSON, PATH
 from pytpc.cli.console import warn
+from pytpc.python_runtime.config import variable_of
 from pytpc.ros.node_start import has_python, with_python, without_python
 from pytpc.workspace.colcon import Bases
+
+_RING, _RING_BUDGET = variable_of("ring"), variable_of("ring_budget")
 
 
 @click.command("env")
 @click.argument("source", type=PATH, required=False)
 @click.option("--off", is_flag=True, help="Print the commands that undo it; needs no SOURCE.")
 @click.option("--setup", is_flag=True, help="Include what the workspace's setup.bash sets.")
+@click.option(
+    "--ring",
+    type=click.FloatRange(0.05, 10080),
+    metavar="MINUTES",
+    help="Let nodes keep the last MINUTES on the disk, for `pytpc keep`.",
+)
+@click.option(
+    "--ring-budget",
+    type=click.IntRange(4, 1 << 24),
+    metavar="MIB",
+    help="Most MiB that the ring of a process takes. [default: 64]",
+)
 @click.option(
     "--shell",
     type=click.Choice(SHELLS),
@@ -30,7 +45,16 @@ from pytpc.workspace.colcon import Bases
     help="Shell to print for; sh is for bash, zsh and the like.",
 )
 @JSON
-def env_command(*, source: Path | None, off: bool, setup: bool, shell: str, as_json: bool) -> None:
+def env_command(  # noqa: PLR0913
+    *,
+    source: Path | None,
+    off: bool,
+    setup: bool,
+    ring: float | None,
+    ring_budget: int | None,
+    shell: str,
+    as_json: bool,
+) -> None:
     """Print shell commands; nodes started from this shell are those of the build, and report.
 
     \b
@@ -46,13 +70,27 @@ def env_command(*, source: Path | None, off: bool, setup: bool, shell: str, as_j
     """
     if off and setup:
         raise click.UsageError("--off cannot be used with --setup: it does not undo setup.bash")
+    if ring_budget is not None and ring is None:
+        raise click.UsageError("--ring-budget needs --ring MINUTES")
+    if off and ring is not None:
+        raise click.UsageError("--off ends the ring as well; leave out --ring")
     before = dict(os.environ)
-    after = without_devel_space(without_python(before)) if off else _on(source, before, setup=setup)
+    if off:
+        after = without_devel_space(without_python(before))
+        after = {name: text for name, text in after.items() if name not in (_RING, _RING_BUDGET)}
+    else:
+        after = _on(source, before, setup=setup, has_more=ring is not None)
+    if ring is not None:
+        after = {**after, _RING: f"{ring:g}"}
+    if ring_budget is not None:
+        after = {**after, _RING_BUDGET: str(ring_budget)}
     change = EnvChange.between(before, after)
     click.echo(change.json() if as_json else change.text(shell), nl=False)
 
 
-def _on(source: Path | None, before: dict[str, str], *, setup: bool) -> dict[str, str]:
+def _on(
+    source: Path | None, before: dict[str, str], *, setup: bool, has_more: bool
+) -> dict[str, str]:
     static = static_file(source)
     after = before
     if setup:
@@ -60,7 +98,7 @@ def _on(source: Path | None, before: dict[str, str], *, setup: bool) -> dict[str
     after = with_devel_space(after, Bases(static.parent).devel)
     if has_python(static):
         return with_python(after, static)
-    if after == before:
+    if after == before and not has_more:
         warn(f"{static}: no comparisons in Python, so there is nothing to set")
     return after
 

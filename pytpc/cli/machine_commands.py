@@ -15,6 +15,7 @@ from pytpc.base.wording import many
 from pytpc.cli.arguments import CONSTANTS, JSON, PATH, RULES
 from pytpc.cli.console import console, print_json, table_of, waiting
 from pytpc.cli.lines import progress_console
+from pytpc.ros.node_start import files_folder
 from pytpc.ros.ros2.graph_check import check_ros2_graph
 from pytpc.workspace.doctor.finding import Finding, Severity, by_severity
 from pytpc.workspace.doctor.machine import check_machine, look_at_machine
@@ -61,14 +62,19 @@ def toolchain_command(
 def doctor_command(ctx: click.Context, *, workspace: Path | None, as_json: bool) -> None:
     """Check this machine and WORKSPACE, and print the command that fixes each problem.
 
-    In a shell that names ROS 2, it also says whether its graph is reached. The exit status is 1 if
+    In a shell that names ROS 2, it also says whether its graph is reached. Nodes that keep their
+    last minutes on the disk are listed. The exit status is 1 if
     a problem keeps a build from working. Nothing is changed.
     """
+    # What reads files takes longer to import than the rest of this module.
+    from pytpc.ros.ring_check import check_rings  # noqa: PLC0415
+
     with waiting(progress_console(), "checking"):
         seen = None if workspace is None else look_at_workspace(workspace)
         for_ros1 = seen is None or not seen.is_for_ros2_alone
         findings = check_machine(look_at_machine(workspace or Path()), for_ros1=for_ros1)
         findings += check_ros2_graph(os.environ)
+        findings += check_rings(files_folder(os.environ))
         if workspace is not None and seen is not None:
             findings += check_workspace(seen, look_at_known(workspace))
     findings = by_severity(findings)

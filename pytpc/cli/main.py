@@ -35,6 +35,7 @@ _GROUPED = {
             "mission_commands",
             "Record the running graph, or a launch file's mission.",
         ),
+        "keep": ("keep_commands", "Keep the last minutes of a robot that runs, as a recording."),
         "run": ("run_commands", "Run a mission up to its verdict, or one Python node."),
         "mark": ("mark_commands", "Mark errors of the robot by pressing a key."),
         "watch": ("watch_commands", "Show the suspected parameters while the robot runs; mark."),

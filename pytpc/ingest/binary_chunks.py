@@ -75,7 +75,10 @@ def _whole_bytes(count: int) -> int:
 
 @dataclass(frozen=True, slots=True)
 class FileHeader:
-    """The header of the file; times in ns of the clocks of its machine."""
+    """The header of the file; times in ns of the clocks of its machine.
+
+    ``segment`` is its number in a ring, from 1; 0: it is no ring's.
+    """
 
     pid: int
     steady_ns: int
@@ -83,6 +86,7 @@ class FileHeader:
     state: int
     not_recorded: int
     parent: int
+    segment: int
     node: str
     host: str
     program: str
@@ -96,7 +100,7 @@ class FileHeader:
         """
         if len(data) < layout.HEADER_BYTES:
             raise ValueError(f"the file ends at byte {len(data)}, within its header")
-        magic, size, record, chunk, pid, steady, real, state, _, lost, parent, _, *texts = (
+        magic, size, record, chunk, pid, steady, real, state, _, lost, parent, segment, *texts = (
             layout.HEADER.unpack_from(data)
         )
         if magic != layout.MAGIC:
@@ -109,7 +113,7 @@ class FileHeader:
         node, host, program = (
             text.partition(b"\0")[0].decode("utf-8", "replace") for text in texts
         )
-        return cls(pid, steady, real, state, lost, parent, node, host, program)
+        return cls(pid, steady, real, state, lost, parent, segment, node, host, program)
 
 
 @dataclass

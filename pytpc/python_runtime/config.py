@@ -16,7 +16,7 @@ POLICIES = ("every", "edges", "light")
 # Everybody who reaches the ROS master can set a parameter: where files go and how large they grow
 # is for the environment alone.
 PARAMETERS = ("sink", "policy", "period", "site_cap", "process_cap")
-NAMES = (*PARAMETERS, "folder", "file_limit", "file_reserve")
+NAMES = (*PARAMETERS, "folder", "file_limit", "file_reserve", "ring", "ring_budget")
 if TYPE_CHECKING:
     Value = Any
 
@@ -29,6 +29,8 @@ _OF_OTHERS = (100_000_000, 0, 0)
 class Config(NamedTuple):
     """All settings. Caps are in reports a second, limits in MiB; 0 means no cap and no limit.
 
+    ``ring_ns``: what a ring of files keeps, 0: there is no ring; ``ring_budget`` is in MiB.
+
     ``policy`` is empty, and the three numbers after it are -1, if they were not chosen.
     """
 
@@ -40,6 +42,13 @@ class Config(NamedTuple):
     folder: str = ""
     file_limit: int = 4096
     file_reserve: int = 256
+    ring_ns: int = 0
+    ring_budget: int = 64
+
+    @property
+    def segment_bytes(self) -> int:
+        """The share of one file in the budget of the ring, at least 1 MiB and the header."""
+        return max((self.ring_budget << 20) // 8, (1 << 20) + 4096)
 
     def filled_in(self) -> Config:
         """The settings with the usual values for what was not chosen."""
@@ -56,20 +65,42 @@ def parsed(name: str, text: str) -> tuple[dict[str, Value] | None, str]:
     if choices is not None:
         why = f"it must be one of {', '.join(choices)}"
         return ({name: text}, "") if text in choices else (None, why)
-    if name == "period":
-        try:
-            seconds = float(text)
-        except ValueError:
-            seconds = 0.0
-        if not 1e-3 <= seconds <= 3600:
-            return None, "it must be a number of seconds from 0.001 to 3600"
-        return {"period_ns": int(seconds * 1e9)}, ""
+    special = {"period": _period, "ring": _ring, "ring_budget": _ring_budget}.get(name)
+    if special is not None:
+        return special(text)
     if name == "folder":
         return {name: text}, ""
     if name in NAMES:
         is_count = text.isascii() and text.isdigit() and int(text) <= _LARGEST
         return ({name: int(text)}, "") if is_count else (None, "it must be a whole number")
     return None, "there is no such setting"
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return -1.0
+
+
+def _period(text: str) -> tuple[dict[str, Value] | None, str]:
+    seconds = _number(text)
+    if not 1e-3 <= seconds <= 3600:
+        return None, "it must be a number of seconds from 0.001 to 3600"
+    return {"period_ns": int(seconds * 1e9)}, ""
+
+
+def _ring(text: str) -> tuple[dict[str, Value] | None, str]:
+    minutes = _number(text)
+    if minutes and not 0.05 <= minutes <= 10080:
+        return None, "it must be a number of minutes, 0 or from 0.05 to 10080"
+    return {"ring_ns": int(minutes * 60e9)}, ""
+
+
+def _ring_budget(text: str) -> tuple[dict[str, Value] | None, str]:
+    is_budget = text.isascii() and text.isdigit() and 4 <= int(text) <= 1 << 24
+    why = "it must be a whole number of MiB from 4"
+    return ({"ring_budget": int(text)}, "") if is_budget else (None, why)
 
 
 def variable_of(name: str) -> str:

@@ -16,8 +16,12 @@ from pytpc.python_runtime import ros_state
 from pytpc.python_runtime.sinks import PeriodSummary, Sink, number
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from pytpc.python_runtime.config import Config
+    from pytpc.python_runtime.log_file import LogFile
     from pytpc.python_runtime.policies import Caps
+    from pytpc.python_runtime.ring import Statements
     from pytpc.python_runtime.sites import Reported
 
 # As in the C++ runtime: so many evaluations are inspected before sampling begins, and the stride
@@ -88,9 +92,13 @@ class LightSummary(PeriodSummary):
 class Light:
     """The policy."""
 
-    def __init__(self, config: Config, sink: Sink, caps: Caps) -> None:
+    def __init__(
+        self, config: Config, sink: Sink, caps: Caps, statements: Statements | None = None
+    ) -> None:
+        """``statements`` are those of a ring."""
         self._sink = sink
         self._caps = caps
+        self._statements = statements
         self._period_ns = config.period_ns
         self._lock = threading.RLock()
         self._open: dict[Reported, LightSummary] = {}
@@ -127,6 +135,8 @@ class Light:
     def _edge(self, kept: LightSummary, result: bool, cmp: float, thresh: float, res: bool) -> int:
         """Report it if the outcome has changed and the caps allow it."""
         one = kept.one
+        if self._statements is not None:
+            self._statements.again(one, result, cmp, thresh, res)
         last, one.last = one.last, int(result)
         if last == result:
             return 0
@@ -136,8 +146,23 @@ class Light:
             self._caps.count_over(one)
         elif not (is_flop and self._caps.is_over(one, is_flop=True)):
             kept.told = int(result)
-            self._sink.edge(one, result, cmp, thresh, res)
+            self._tell(one, result, cmp, thresh, res)
         return int(is_flop)
+
+    def _tell(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
+        self._sink.edge(one, result, cmp, thresh, res)
+        if self._statements is not None:
+            self._statements.told(one, result, cmp, thresh, res)
+
+    def turn(self, _file: LogFile, turn: Callable[[], None]) -> None:
+        """The sinks write another file from the call of ``turn`` on: look at each comparison."""
+        with self._lock:
+            turn()
+            if self._statements is not None:
+                self._statements.begin()
+            for kept in self._open.values():
+                kept.settle()
+                kept.left = kept.given = 0
 
     def flush(self, *, all_of_them: bool) -> None:
         """Send the summaries of a period that is over, or what there is."""
@@ -172,7 +197,7 @@ class Light:
         """Report the present outcome if the flops that led to it were beyond the caps."""
         if kept.told not in (-1, kept.one.last):
             kept.told = kept.one.last
-            self._sink.edge(kept.one, kept.result, kept.cmp, kept.thresh, kept.res)
+            self._tell(kept.one, kept.result, kept.cmp, kept.thresh, kept.res)
 
 
 def short_line(kept: LightSummary) -> str:

@@ -44,7 +44,7 @@ from pytpc.python_runtime.log_layout import (
     pack_integers,
     pack_report,
 )
-from pytpc.python_runtime.mapped_file import Extent, MappedFile, bounded
+from pytpc.python_runtime.mapped_file import Extent, MappedFile, SegmentName, bounded
 from pytpc.python_runtime.sinks import LiveSlot
 
 if TYPE_CHECKING:
@@ -142,14 +142,22 @@ class _Owner:
 class LogFile(MappedFile):
     """One file, and the records that are written to it."""
 
-    def __init__(self, config: Config, parent: int, each_second: Callable[[], None]) -> None:
-        """Make the file in its folder.
+    def __init__(
+        self,
+        config: Config,
+        parent: int,
+        each_second: Callable[[], None],
+        of: SegmentName | None = None,
+    ) -> None:
+        """Make the file in its folder; ``of``: the next one of a ring.
 
         Raises:
             OSError: it cannot be made.
         """
         node = ros_state.now().node
-        super().__init__(config, parent, node)
+        super().__init__(config, parent, node, of)
+        # What a key holds that this file has: a key does not keep the memory of a former file.
+        self._announced = object()
         self._each_second = each_second
         self._local = threading.local()
         self._numbers = count(1).__next__
@@ -170,6 +178,7 @@ class LogFile(MappedFile):
     def _taker(self) -> Take:
         """The function that takes a report, with all that it needs in local variables."""
         local, whats, pack, steady = self._local, WHATS, pack_report, monotonic_ns
+        announced = self._announced
 
         def take(one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
             try:
@@ -181,7 +190,7 @@ class LogFile(MappedFile):
                 chunk = place.chunk
                 at = chunk.claim()
                 now = steady()
-                if at >= chunk.end or one.file is not self or now >= self._look_at:
+                if at >= chunk.end or one.file is not announced or now >= self._look_at:
                     found = self._prepared(place, one, chunk, at, now)
                     if found is None:
                         return
@@ -201,7 +210,7 @@ class LogFile(MappedFile):
         if now >= self._sync_at:
             self.look(now)
             self._each_second()
-        if one.file is not self:
+        if one.file is not self._announced:
             self.announce(one)
         found = (chunk, at) if at < chunk.end else self._claimed(place)
         if found is not None and (self.is_simulated or place.sim_ns != -1):
@@ -343,11 +352,11 @@ class LogFile(MappedFile):
     def announce(self, one: Reported) -> None:
         """Record once which key a number stands for."""
         with self._lock:
-            if one.file is self:
+            if one.file is self._announced:
                 return
             raw = one.key.encode("utf-8")[:LONGEST_KEY]
             if self.write(SITE, struct.pack("<Iq", one.number, len(raw)) + raw):
-                one.file = self
+                one.file = self._announced
             if one.node:
                 raw = f"{one.key},node:{one.node}".encode()[:LONGEST_KEY]
                 self.write(NAME, struct.pack("<Iq", one.number, len(raw)) + raw)

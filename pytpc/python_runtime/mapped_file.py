@@ -33,9 +33,12 @@ from pytpc.python_runtime.log_layout import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from pytpc.python_runtime.config import Config
 
 _EXTENT_BYTES = 1 << 20
+_HALF_EXTENT = _EXTENT_BYTES // CHUNK_BYTES // 2
 # Mappings are never unmapped, because other threads may write to them, and each takes a
 # descriptor. They grow in size, so that 4 GiB need about 70 of them.
 _LARGEST_EXTENT = 64 << 20
@@ -60,13 +63,18 @@ class MappedFile:
     ``is_stopped``: the disk is full, or a limit is reached.
     """
 
-    def __init__(self, config: Config, parent: int, node: str) -> None:
-        """Make the file in its folder, with its header alone.
+    def __init__(
+        self, config: Config, parent: int, node: str, of: SegmentName | None = None
+    ) -> None:
+        """Make the file in its folder, with its header alone; ``of``: the next of a ring.
 
         Raises:
             OSError: it cannot be made.
         """
-        self._limit = config.file_limit << 20
+        self._segment = 0
+        self._limit = (config.file_limit if of is None else config.ring_budget) << 20
+        # Called when half of the last extent is used, and when there is no more space.
+        self.on_half: Callable[[], None] | None = None
         self._reserve = config.file_reserve << 20
         self._lock = threading.RLock()
         self._extents: list[Extent] = []
@@ -74,9 +82,9 @@ class MappedFile:
         self._is_growing = False
         self.is_stopped = False
         self._is_closed = False
-        self.path, self._descriptor = _created(config, node)
+        self.path, self._descriptor, self._segment = _created(config, node, of)
         its = os.fstat(self._descriptor)
-        self._identity = (its.st_dev, its.st_ino)
+        self.identity = (its.st_dev, its.st_ino)
         try:
             self._begin(parent, node)
             os.rename(f"{self.path}.new", self.path)
@@ -104,6 +112,8 @@ class MappedFile:
                 except OSError as error:
                     self._stop(error.strerror or str(error))
                     return None
+            if self.on_half is not None and length_hint(extent.free) == _HALF_EXTENT:
+                self.on_half()
             CHUNK.pack_into(extent.bytes, begin + 4, thread, first, _thread.get_native_id())
             extent.words[begin >> 2] = kind
             return extent, begin
@@ -120,7 +130,8 @@ class MappedFile:
     def _add_extent(self) -> None:
         if not self._is_mine():
             raise OSError(0, "the program has closed its descriptor")
-        size = min(_LARGEST_EXTENT, max(_EXTENT_BYTES, self._size - HEADER_BYTES))
+        largest = _EXTENT_BYTES if self._segment else _LARGEST_EXTENT
+        size = min(largest, max(_EXTENT_BYTES, self._size - HEADER_BYTES))
         end = self._size + size
         if self._limit and end > self._limit:
             size = _EXTENT_BYTES
@@ -142,12 +153,17 @@ class MappedFile:
             its = os.fstat(self._descriptor)
         except OSError:
             return False
-        return (its.st_dev, its.st_ino) == self._identity
+        return (its.st_dev, its.st_ino) == self.identity
 
     def _stop(self, why: str) -> None:
         if not self.is_stopped:
             self.is_stopped = True
             self._put_state(STOPPED)
+            if self._segment:
+                # The ring begins another file, or says that it cannot.
+                if self.on_half is not None:
+                    self.on_half()
+                return
             warn(f"{self.path}: {why}; recording stops, and the program continues")
 
     def close(self) -> None:
@@ -160,9 +176,20 @@ class MappedFile:
                 with contextlib.suppress(OSError):
                     free = length_hint(self._extents[-1].free) * CHUNK_BYTES
                     os.ftruncate(self._descriptor, self._size - free)
+                    self._size -= free
                 os.close(self._descriptor)
             if not self.is_stopped:
                 self._put_state(CLOSED)
+
+    @property
+    def size(self) -> int:
+        """Bytes that it takes on the disk."""
+        return self._size
+
+    @property
+    def used(self) -> int:
+        """Bytes of its header and of the chunks that were handed out."""
+        return self._size - length_hint(self._extents[-1].free) * CHUNK_BYTES
 
     def _put_state(self, state: int) -> None:
         struct.pack_into("<I", self._header, STATE_AT, state)
@@ -189,7 +216,7 @@ class MappedFile:
             0,
             0,
             parent,
-            0,
+            self._segment,
             bounded(node, NODE_BYTES),
             bounded(os.uname().nodename, 256),
             bounded(_program(), 1024),
@@ -240,8 +267,17 @@ def _private_folder(folder: str) -> str:
     return folder
 
 
-def _created(config: Config, node: str) -> tuple[str, int]:
-    """The path of a new file, and a descriptor of that path with ``.new`` added.
+class SegmentName:
+    """What the files of one ring have in common, and the number of the next one."""
+
+    def __init__(self, began_s: int) -> None:
+        """``began_s``: in seconds since 1970."""
+        self.began_s = began_s
+        self.next = 1
+
+
+def _created(config: Config, node: str, of: SegmentName | None = None) -> tuple[str, int, int]:
+    """The path of a new file, a descriptor of it with ``.new`` added, and its number in a ring.
 
     The file gets its name when it can be read. Until then ``.new`` keeps processes of other
     containers, which may have the same number and so the same names, from using it.
@@ -253,16 +289,22 @@ def _created(config: Config, node: str) -> tuple[str, int]:
         folder = _private_folder(f"/tmp/tpc-{os.geteuid()}")
     name = (node or os.path.basename(_program())).lstrip("/")
     name = "".join(c if c.isascii() and (c.isalnum() or c in "_-") else "_" for c in name)[:100]
-    stem = os.path.join(folder, f"{name or 'process'}-{os.getpid()}-{time_ns() // SECOND}")
+    began_s = time_ns() // SECOND if of is None else of.began_s
+    stem = os.path.join(folder, f"{name or 'process'}-{os.getpid()}-{began_s}")
+    segment = 0
     for number in range(1, 1000):
-        path = f"{stem}-{number}.tpc" if number > 1 else f"{stem}.tpc"
+        if of is not None:
+            segment, of.next = of.next, of.next + 1
+            path = f"{stem}-{segment:04}.tpc"
+        else:
+            path = f"{stem}-{number}.tpc" if number > 1 else f"{stem}.tpc"
         flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC
         try:
             descriptor = os.open(f"{path}.new", flags, 0o600)
         except FileExistsError:
             continue
         if not os.path.exists(path):
-            return path, descriptor
+            return path, descriptor, segment
         os.close(descriptor)
         os.unlink(f"{path}.new")
     raise FileExistsError(17, "File exists", stem)

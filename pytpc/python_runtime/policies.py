@@ -7,10 +7,14 @@ from time import monotonic_ns
 from typing import TYPE_CHECKING
 
 from pytpc.python_runtime import ros_state
-from pytpc.python_runtime.sinks import FileSink, PeriodSummary, Sink
+from pytpc.python_runtime.sinks import PeriodSummary, Sink
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from pytpc.python_runtime.config import Config
+    from pytpc.python_runtime.log_file import LogFile
+    from pytpc.python_runtime.ring import Statements
     from pytpc.python_runtime.sites import Reported
 
 _SECOND = 1_000_000_000
@@ -84,14 +88,23 @@ class Caps:
 class Edges:
     """Each flop is reported; all evaluations are summarised by thread and period."""
 
-    def __init__(self, config: Config, sink: Sink, caps: Caps) -> None:
+    def __init__(
+        self,
+        config: Config,
+        sink: Sink,
+        caps: Caps,
+        file: LogFile | None = None,
+        statements: Statements | None = None,
+    ) -> None:
+        """``file`` has the open periods; ``statements`` are those of a ring."""
         self._sink = sink
         self._caps = caps
+        self._statements = statements
         self._period_ns = config.period_ns
         self._start = monotonic_ns()
         self._lock = threading.RLock()
         self._open: dict[tuple[int, Reported], PeriodSummary] = {}
-        self._file = sink.file if isinstance(sink, FileSink) else None
+        self._file = file
 
     def take(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
         """Add one evaluation."""
@@ -124,13 +137,31 @@ class Edges:
 
     def _edge(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> int:
         """Report it if the result of the predicate has changed."""
+        statements = self._statements
+        if statements is not None:
+            statements.again(one, result, cmp, thresh, res)
         last, one.last = one.last, int(result)
         if last == result:
             return 0
         is_flop = last >= 0
         if not self._caps.is_over(one, is_flop):
             self._sink.edge(one, result, cmp, thresh, res)
+            if statements is not None:
+                statements.told(one, result, cmp, thresh, res)
         return int(is_flop)
+
+    def turn(self, file: LogFile, turn: Callable[[], None]) -> None:
+        """Go on in ``file``, which the sinks do from the call of ``turn`` on."""
+        with self._lock:
+            for kept in self._open.values():
+                if kept.evaluations:
+                    self._close(kept)
+            self._open = {}
+            turn()
+            self._file = file
+            if self._statements is not None:
+                self._statements.begin()
+        self._sink.settle()
 
     def _close(self, kept: PeriodSummary) -> None:
         self._sink.summary(kept)

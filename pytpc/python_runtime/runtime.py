@@ -14,6 +14,7 @@ import atexit
 import os
 import threading
 import time
+from time import monotonic_ns
 from typing import TYPE_CHECKING
 
 from pytpc.python_runtime import ros1_state, ros2_sinks, ros2_state, ros_state, sites
@@ -22,6 +23,7 @@ from pytpc.python_runtime.errors import warn
 from pytpc.python_runtime.light import Light
 from pytpc.python_runtime.log_file import LogFile
 from pytpc.python_runtime.policies import Caps, Edges
+from pytpc.python_runtime.ring import BesideSink, Ring, Statements
 from pytpc.python_runtime.ros1_control import Control
 from pytpc.python_runtime.ros1_sinks import AutoSink, RosoutSink, TopicSink
 from pytpc.python_runtime.ros2_helper import Helper
@@ -57,6 +59,7 @@ class Runtime:
         self._parent = 0
         self._was_node = False
         self._has_helper = False
+        self._has_ring_thread = False
         self._is_served = False
         self._is_split = False
         self._ros2: Helper | None = None
@@ -64,6 +67,8 @@ class Runtime:
         self._caps = Caps(Config(), self._sink)
         self._edges: Edges | Light | None = None
         self.file: LogFile | None = None
+        self._ring: Ring | None = None
+        self._to_file: FileSink | None = None
         sites.set_take(self._first)
         ros2_state.tell(self._node_came)
         # Handlers run in the reverse order of their registration: this one is among the last.
@@ -155,13 +160,17 @@ class Runtime:
             sink.take_over(former)
         if former is not sink and not isinstance(former, FileSink):
             former.end()
-        self._caps = Caps(config, sink)
         is_on = config.sink != "off"
+        all_sinks = self._with_ring(config, sink)
+        self._caps = Caps(config, all_sinks)
         self._edges = None
+        ring = self._to_file if self._ring is not None else None
+        statements = None if ring is None else Statements(ring)
         if config.policy == "edges" and is_on:
-            self._edges = Edges(config, sink, self._caps)
+            file = None if self._to_file is None else self._to_file.file
+            self._edges = Edges(config, all_sinks, self._caps, file, statements)
         elif config.policy == "light" and is_on:
-            self._edges = Light(config, sink, self._caps)
+            self._edges = Light(config, all_sinks, self._caps, statements)
         sink.flush = self._flush
         if self._edges is not None:
             for one in self.all_reported():
@@ -170,14 +179,27 @@ class Runtime:
         elif (config.site_cap or config.process_cap) and is_on:
             sites.set_take(self._caps.take)
         else:
-            sites.set_take(sink.take)
+            sites.set_take(all_sinks.take)
+        if self._ring is not None and is_on:
+            self._start_ring()
         return True
+
+    def _with_ring(self, config: Config, sink: Sink) -> Sink:
+        """What takes all reports: ``sink``, and the ring beside it if there is one."""
+        self._to_file = sink if isinstance(sink, FileSink) else None
+        if not config.ring_ns or config.sink in ("file", "off"):
+            return sink
+        beside = self._file_sink(config)
+        if beside is None:
+            return sink
+        self._to_file = beside
+        return BesideSink(sink, beside)
 
     def _sink_of(self, config: Config) -> Sink | None:
         """The sink for these settings; the current one if it fits."""
         if config.sink == "file":
             return self._file_sink(config)
-        if self.file is not None:
+        if self.file is not None and not config.ring_ns:
             self.file.close()
             self.file = None
         if config.sink == "off":
@@ -198,20 +220,40 @@ class Runtime:
         kind = _OF_ROS1[config.sink]
         return self._sink if type(self._sink) is kind else kind()
 
-    def _file_sink(self, config: Config) -> Sink | None:
+    def _file_sink(self, config: Config) -> FileSink | None:
         if self.file is None or self.file.is_stopped:
             try:
-                new = LogFile(config, self._parent, self._look)
+                new = self._new_file(config)
             except OSError as error:
+                if self._ring is not None:
+                    self._ring.failed(error)
+                    return None
                 place = error.filename or config.folder
                 warn(f"{place}: {error.strerror or error}; no reports are written to a file")
                 return None
-            if self.file is not None:
+            if self._ring is not None:
+                self._ring.turned(self.file)
+            elif self.file is not None:
                 self.file.close()
             self.file = new
         self.file.write_policy(config)
-        is_it = isinstance(self._sink, FileSink) and self._sink.file is self.file
-        return self._sink if is_it else FileSink(self.file)
+        if isinstance(self._sink, FileSink) and self._sink.file is self.file:
+            return self._sink
+        return FileSink(self.file)
+
+    def _new_file(self, config: Config) -> LogFile:
+        """A new file, the next one of the ring if there is one.
+
+        Raises:
+            OSError: it cannot be made.
+        """
+        if not config.ring_ns:
+            return LogFile(config, self._parent, self._look)
+        if self._ring is None:
+            self._ring = Ring(config)
+        return self._ring.next(
+            self.file, lambda name: LogFile(config, self._parent, self._look, name)
+        )
 
     def _flush(self) -> None:
         """Send what is still kept to its sink."""
@@ -223,6 +265,67 @@ class Runtime:
         """Once a second, in a report to the file: start the helper if rospy is imported by now."""
         if not self._has_helper and not self._is_served and ros1_state.is_imported():
             self._start_helper()
+
+    # --- the ring
+
+    def _start_ring(self) -> None:
+        """Start the thread of the ring, which goes on until the process ends."""
+        if self._has_ring_thread:
+            return
+        self._has_ring_thread = True
+        try:
+            _thread.start_new_thread(self._turn_ring, (os.getpid(),))
+        except RuntimeError:
+            warn("cannot start a thread: the ring has one file, which is as large as its budget")
+
+    def _turn_ring(self, process: int) -> None:
+        while os.getpid() == process:
+            ring = self._ring
+            if ring is None:
+                break
+            ring.wait()
+            with self._lock:
+                if not self._has_ring_thread or self._ring is not ring:
+                    break
+                self._turn(ring)
+
+    def _turn(self, ring: Ring) -> None:
+        """Begin the next file of the ring if it is time; the lock is held."""
+        ring.settle()
+        config = self.config.filled_in()
+        old, to_file = self.file, self._to_file
+        if config.sink == "off":
+            return
+        if to_file is None:
+            # It could not be begun with the sink.
+            if ring.is_due(None):
+                self._choose(self.config)
+            return
+        if old is not None:
+            old.look(monotonic_ns())
+        if self._edges is not None and not self._has_helper and self._ros2 is None:
+            # Nobody else ends the periods.
+            self._edges.flush(all_of_them=False)
+        if not ring.is_due(old):
+            return
+        try:
+            new = self._new_file(config)
+        except OSError as error:
+            ring.failed(error)
+            return
+        new.write_policy(config)
+
+        def turn() -> None:
+            self.file = new
+            to_file.go_on_in(new)
+
+        if self._edges is not None:
+            self._edges.turn(new, turn)
+        else:
+            turn()
+            if to_file is self._sink and not (config.site_cap or config.process_cap):
+                sites.set_take(new.take)
+        ring.turned(old)
 
     # --- the helper thread
 
@@ -258,7 +361,9 @@ class Runtime:
     def poll(self) -> float | None:
         """Let policy and sink do what is due; the seconds until the next time, None for never."""
         sink, edges = self._sink, self._edges
-        has_periods = edges is not None and (self.file is None or isinstance(edges, Light))
+        has_periods = edges is not None and (
+            not isinstance(sink, FileSink) or isinstance(edges, Light)
+        )
         if edges is not None and has_periods:
             edges.flush(all_of_them=False)
         sink.poll()
@@ -324,12 +429,14 @@ class Runtime:
                 words.append(f"process_cap={config.process_cap}")
             words += [f"sites={len(self._reported)}", f"dropped={self._caps.dropped_in_all}"]
             words.append(self._sink.status())
+            if self._ring is not None and config.sink != "off":
+                words.append(self._ring.status(self.file))
             return " ".join(word for word in words if word)
 
     def end(self) -> None:
         """Called when the process ends by itself."""
         with self._lock:
-            self._has_helper = False
+            self._has_helper = self._has_ring_thread = False
             self._flush()
             helper, sink = self._ros2, self._sink
         if helper is not None:
@@ -338,6 +445,10 @@ class Runtime:
             helper.send_rest(sink)
         with self._lock:
             self._sink.end()
+            if self._ring is not None:
+                if self._to_file is not None and self._to_file is not self._sink:
+                    self._to_file.end()
+                self._ring.end()
         if helper is not None:
             helper.close()
 
@@ -362,6 +473,10 @@ class Runtime:
         if self._is_started:
             self._parent = os.getppid()
         self.file = None
+        # What is in it is the parent's.
+        self._ring = None
+        self._to_file = None
+        self._has_ring_thread = False
         self._sink = Sink()
         self._edges = None
         self._caps = Caps(Config(), self._sink)

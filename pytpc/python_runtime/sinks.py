@@ -221,6 +221,10 @@ class FileSink(Sink):
 
     def __init__(self, file: LogFile) -> None:
         super().__init__()
+        self.go_on_in(file)
+
+    def go_on_in(self, file: LogFile) -> None:
+        """Write another file from now on."""
         self.file = file
         self.take = file.take  # type: ignore[method-assign,assignment]
         self.edge = file.edge  # type: ignore[method-assign]

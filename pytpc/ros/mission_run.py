@@ -172,6 +172,7 @@ class RecordOptions:
         on_quiet: called by another thread if nodes report nothing, with the reason as a line, and
             whether that is a fault.
         on_died: called with each node of the launch file that dies.
+        reports: reports that come over a running graph are recorded; else only marks and values.
     """
 
     out_dir: Path
@@ -192,6 +193,7 @@ class RecordOptions:
     on_doubt: Callable[[str], None] | None = None
     on_quiet: Callable[[str, bool], None] | None = None
     on_died: Callable[[DiedNode], None] | None = None
+    reports: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,7 +201,8 @@ class MissionRun:
     """A mission that was recorded.
 
     ``ended`` is ``done``, ``ended`` (roslaunch did, as it does when a required node ends),
-    ``timeout``, ``interrupted``, or ``failed`` where a node that was needed died. ``sim_s`` is how
+    ``timeout``, ``interrupted``, ``kept`` (the last minutes of a ring were), or ``failed`` where a
+    node that was needed died. ``sim_s`` is how
     long it took on the graph's clock, ``wall_s`` on the wall's; ``done_ns`` is when on the former
     it was done, None where nobody said so. ``lost`` has for each node the messages on /rosout that
     did not reach the bag, ``missed_before`` those from before the recorder was connected to it.

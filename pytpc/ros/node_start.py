@@ -128,3 +128,13 @@ def _other_folders(env: Mapping[str, str]) -> list[str]:
     folders = env[_MODULES].split(os.pathsep) if env.get(_MODULES) else []
     # An empty one is Python's own word for the current folder.
     return [folder for folder in folders if folder != str(ON_PATH)]
+
+
+def files_folder(env: Mapping[str, str]) -> Path:
+    """Where nodes write their files that are started with this environment."""
+    folder = Path(f"/tmp/tpc-{os.geteuid()}")
+    if home := env.get("HOME"):
+        folder = Path(home) / ".ros/tpc"
+    if ros_home := env.get("ROS_HOME"):
+        folder = Path(ros_home) / "tpc"
+    return Path(env.get("TPC_FOLDER") or folder)

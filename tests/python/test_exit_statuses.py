@@ -50,6 +50,7 @@ STATICS: Mapping[str, Sequence[str]] = {
     "explain": (INPUT, "~limit"),
     "export": (INPUT, "--html", "out.html"),
     "fix": (str(EXAMPLE), "--static", INPUT),
+    "keep": ("--folder", ".", "--static", INPUT),
     "list": (INPUT,),
     "margins": (str(EXAMPLE), "--static", INPUT),
     "rank": (str(EXAMPLE), "--static", INPUT),
@@ -75,6 +76,7 @@ FOLDERS: Mapping[str, Sequence[str]] = {
     "survey": (INPUT,),
 }
 GRAPHS: Mapping[str, Sequence[str]] = {
+    "keep": ("--on-marks", "-o", "out"),
     "record": ("-o", "out"),
     "relay": (),
     "sink": (),

@@ -115,6 +115,23 @@ int counted(const Arguments &A) {
     pause();
 }
 
+/// seldom MS: key 1 is true once; key 0 is true every millisecond for MS, and
+/// their number is printed; then key 1 is false.
+int seldom(const Arguments &A) {
+  using std::chrono::steady_clock;
+  Keys K(2);
+  auto End = steady_clock::now() + std::chrono::milliseconds(std::stol(A[0]));
+  long Count = 0;
+  log_one(K[1], true, 3, 2, true);
+  for (; steady_clock::now() < End; ++Count) {
+    log_one(K[0], true, 5, 1, true);
+    waitMs(1);
+  }
+  log_one(K[1], false, 1, 2, false);
+  std::printf("%ld\n", Count);
+  return 0;
+}
+
 /// forked REPORTS: in the parent, in a child, in the child's child, and again
 /// in the parent, while another of its threads reports, too.
 int forked(const Arguments &A) {
@@ -469,6 +486,7 @@ int main(int Count, char **Words) {
       {"threads", threads},
       {"counted", counted},
       {"forked", forked},
+      {"seldom", seldom},
       {"ends", ends},
       {"signals", signals},
       {"paced", paced},

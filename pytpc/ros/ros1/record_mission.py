@@ -28,6 +28,7 @@ from pytpc.recording.mission import REPORTS_FOLDER
 from pytpc.ros.mission_run import (
     BAG_FILE,
     DEFAULT_TOPICS,
+    MARK_TOPICS,
     DiedNode,
     MissionRun,
     Progress,
@@ -337,7 +338,10 @@ def _record_graph(
     recorder = GraphRecorder(
         Master(uri, f"{NODE_NAME}_{os.getpid()}"),
         own_host(env, uri),
-        Wanted([*DEFAULT_TOPICS, *options.topics], options.until or None),
+        Wanted(
+            [*(DEFAULT_TOPICS if options.reports else MARK_TOPICS), *options.topics],
+            options.until or None,
+        ),
         out_dir / BAG_FILE,
         strict=False,
     )

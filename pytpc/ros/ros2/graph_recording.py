@@ -181,7 +181,8 @@ class GraphRecording:
         self._options = options
         topics = [f"/{one.lstrip('/')}" for one in options.topics]
         until = f"/{options.until.lstrip('/')}" if options.until else None
-        recorded = dict.fromkeys([ROSOUT, REPORTS, TOPIC, *topics, *([until] if until else [])])
+        always = [ROSOUT, REPORTS, TOPIC] if options.reports else [TOPIC]
+        recorded = dict.fromkeys([*always, *topics, *([until] if until else [])])
         self._file = McapFile(options.out_dir / MCAP_FILE)
         self._recorder = Recorder(self._file, list(recorded), until, False, ROS2)
         self._recorder.hold()
