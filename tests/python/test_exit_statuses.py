@@ -30,6 +30,7 @@ STATIC = EXAMPLE / "static.json"
 # What a command is given; INPUT stands for the file or folder that is wrong.
 INPUT = "INPUT"
 RECORDINGS: Mapping[str, Sequence[str]] = {
+    "compare": (str(EXAMPLE), INPUT, "--static", str(STATIC)),
     "convert": (INPUT, "-o", "out"),
     "diff": (str(EXAMPLE), INPUT, "--static", str(STATIC)),
     "fix": (INPUT, "--static", str(STATIC)),
@@ -45,6 +46,7 @@ RECORDINGS: Mapping[str, Sequence[str]] = {
 }
 STATICS: Mapping[str, Sequence[str]] = {
     "blind-spots": (INPUT,),
+    "compare": (str(STATIC), INPUT),
     "coverage": (INPUT,),
     "diff": (str(EXAMPLE), str(EXAMPLE), "--static", INPUT),
     "explain": (INPUT, "~limit"),
