@@ -301,7 +301,9 @@ def _near(row: NearRow, start_ns: int) -> Board:
         "share": None if row.share is None else round(min(1.0, row.share), 4),
         "last": round((one.last.time_ns - start_ns) / 1e9, 1),
         "since": round((one.since_ns - start_ns) / 1e9, 1),
-        "trend": [None if math.isnan(part.distance) else round(part.distance, 3) for part in one.parts],
+        "trend": [
+            None if math.isnan(part.distance) else round(part.distance, 3) for part in one.parts
+        ],
         "flops": [part.flopped for part in one.parts],
         "members": [],
     }

@@ -279,7 +279,9 @@ def _bound(host: str, port: int) -> socket.socket:
         if error.errno == errno.EADDRINUSE:
             what = f"port {port} is in use: choose another one, or 0 for any that is free"
         elif error.errno == errno.EADDRNOTAVAIL:
-            what = f"--host {host}: this machine does not have this address; `hostname -I` lists them"
+            what = (
+                f"--host {host}: this machine does not have this address; `hostname -I` lists them"
+            )
         else:
             what = f"cannot listen at {host} port {port}: {error.strerror}"
         raise RunError(what) from error

@@ -180,7 +180,9 @@ def test_a_wrong_token_is_refused(served: Served, token: str):
 
 # A name that an attacker points at 127.0.0.1 (DNS rebinding) comes with the cookie of nobody, but
 # the token may have leaked: the name is refused all the same.
-@pytest.mark.parametrize("host", ["evil.example", "127.0.0.1.evil.example", "[::2]", "a b", "@127.0.0.1"])
+@pytest.mark.parametrize(
+    "host", ["evil.example", "127.0.0.1.evil.example", "[::2]", "a b", "@127.0.0.1"]
+)
 def test_another_host_is_refused(served: Served, host: str):
     answer = served.get(f"/?token={served.server.access.token}", Host=host, **served.cookie)
     assert answer.code in (400, 421)
@@ -222,8 +224,8 @@ def test_no_other_file_is_served(served: Served, path: str):
         # A client would tidy the path.
         reader, writer = await asyncio.open_connection("127.0.0.1", served.server.port)
         cookie = served.cookie["Cookie"]
-        request = f"GET {path} HTTP/1.1\r\nHost: localhost\r\nCookie: {cookie}\r\nConnection: close\r\n\r\n"
-        writer.write(request.encode())
+        head = [f"GET {path} HTTP/1.1", "Host: localhost", f"Cookie: {cookie}", "Connection: close"]
+        writer.write("\r\n".join([*head, "", ""]).encode())
         answer = await asyncio.wait_for(reader.read(), PATIENCE_S)
         writer.close()
         return answer
@@ -244,7 +246,10 @@ def test_the_page_has_its_files(served: Served, name: str):
 def test_nothing_but_get(served: Served, method: str):
     async def ask():
         request = HTTPRequest(
-            f"{served.origin}/", method=method, headers=served.cookie, allow_nonstandard_methods=True
+            f"{served.origin}/",
+            method=method,
+            headers=served.cookie,
+            allow_nonstandard_methods=True,
         )
         return await AsyncHTTPClient().fetch(request, raise_error=False)
 
@@ -273,9 +278,7 @@ def test_a_page_gets_a_board_and_then_what_changed(served: Served):
         assert page.hello["hello"]["observer"] == "observer"
         assert page.hello["hello"]["recording"] is True
         await page.ask("seek", to=36.0)
-        while not any(
-            "order" in board["changes"].get("near", {}) for board in page.boards
-        ):
+        while not any("order" in board["changes"].get("near", {}) for board in page.boards):
             await page.read()
             await page.say(do="seen")
         first = page.boards[0]["changes"]
@@ -448,7 +451,9 @@ def test_too_many_messages_are_refused_and_told(served: Served):
         page = await Page.open(served)
         for n in range(90):
             await page.say(do="pause", id=f"p{n}")
-        refused = [answer for n in range(90) if (answer := await page.answer(f"p{n}")).get("refused")]
+        refused = [
+            answer for n in range(90) if (answer := await page.answer(f"p{n}")).get("refused")
+        ]
         assert refused
         assert all("too many" in answer["said"] for answer in refused)
 

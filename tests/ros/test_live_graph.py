@@ -1,4 +1,4 @@
-"""`pytpc live` on a real graph of ROS 1: updates, marks on their topics, and what goes and returns."""
+"""`pytpc live` on a real graph of ROS 1: updates, marks on their topics, what goes and returns."""
 
 from __future__ import annotations
 
@@ -42,13 +42,14 @@ class Live:
         self._count = 0
 
     def __enter__(self) -> Live:
-        self.runner = asyncio.Runner()
-        self.socket = self.runner.run(self._connect())
+        self._loop = asyncio.new_event_loop()
+        self.run = self._loop.run_until_complete
+        self.socket = self.run(self._connect())
         return self
 
     def __exit__(self, *_: object) -> None:
         self.socket.close()
-        self.runner.close()
+        self._loop.close()
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGINT)
         self.process.communicate(timeout=PATIENCE_S)
@@ -66,12 +67,12 @@ class Live:
     def again(self) -> None:
         """The network was cut: a new connection."""
         self.socket.close()
-        self.socket = self.runner.run(self._connect())
+        self.socket = self.run(self._connect())
 
     def ask(self, what: str, **more) -> dict:
         self._count += 1
         ident = f"q{self._count}"
-        self.runner.run(self._say({"do": what, "id": ident, **more}))
+        self.run(self._say({"do": what, "id": ident, **more}))
         while True:
             message = self.read()
             if message.get("done") == ident:
@@ -81,7 +82,7 @@ class Live:
         await self.socket.write_message(json.dumps(message))
 
     def read(self) -> dict:
-        text = self.runner.run(asyncio.wait_for(self._read(), PATIENCE_S))
+        text = self.run(asyncio.wait_for(self._read(), PATIENCE_S))
         assert text is not None
         message = json.loads(text)
         for name, part in message.get("changes", {}).items():
@@ -92,7 +93,7 @@ class Live:
             order = part.get("order", [row["id"] for row in self.board.get(name, ())])
             self.board[name] = [rows[ident] for ident in order]
         if "board" in message:
-            self.runner.run(self._say({"do": "seen"}))
+            self.run(self._say({"do": "seen"}))
         return message
 
     async def _read(self):
