@@ -21,7 +21,7 @@ from pytpc.diagnosis.results.live import LiveRow, Seen
 from pytpc.diagnosis.results.turning import Compared, NearRow
 from pytpc.present.marking_terminal import RecordedMission
 from pytpc.present.page.source import source_lines, way_of
-from pytpc.present.watch_screen import score_text, told_apart
+from pytpc.present.watch_screen import Panel, score_text, told_apart
 from pytpc.recording.marking_session import SPEEDS, View
 from pytpc.recording.marks import Mark, MarkType, short_note
 from pytpc.static.link_unit import Comparison
@@ -35,6 +35,8 @@ _MOST_MARKS = 100
 _MOST_CHOICES = 300
 _QUIET_S = 3.0
 """Without a report for so long, the page says so: the default sink sends one each second."""
+_AGAIN_NS = 500_000_000
+"""Without news the rows are made again after so long: time passes in the trends, too."""
 _LONGEST = 400
 _TITLES: dict[MarkType | None, str] = {
     "I": "Type I: what changed last",
@@ -69,6 +71,7 @@ class LiveBoard:
         self._of: object = None
         self._gone_since: float | None = None
         self._heard: tuple[int, float] = (-1, time.monotonic())
+        self._made: tuple[object, Board] | None = None
 
     def tick(self) -> None:
         """Take in what arrived."""
@@ -89,13 +92,27 @@ class LiveBoard:
             self._of, self._turning = watching, Turning(self._window_s)
         view = self._watched.view()
         now_ns = view.now_ns if view.now_ns is not None else (watching.last_ns or 0)
-        look = self._turning.look(watching, now_ns, MOST_ROWS)
+        marks = self.observers.marks
+        of = watching, watching.evaluations, now_ns // _AGAIN_NS, marks, view.places
+        passing = {
+            "clock": self._clock(view, now_ns),
+            "state": self._state(view, self._watched.status().words()),
+        }
+        if self._made is None or self._made[0] != of:
+            panel = self._watched.panel(now_ns, utf8=True)
+            made = self._comparisons(view, now_ns, marks, panel)
+            # The ranking is not worked out each time. One of another moment does not stay.
+            behind_ns = abs(now_ns - panel.look.now_ns)
+            is_old = behind_ns > (_AGAIN_NS if passing["clock"]["rate"] else 0)
+            self._made = None if is_old else of, made
+        return {**passing, **self._made[1]}
+
+    def _comparisons(self, view: View, now_ns: int, marks: Sequence[Mark], panel: Panel) -> Board:
+        """What is worked out again only if something is new."""
+        look = self._turning.look(self._watched.watching, now_ns, MOST_ROWS)
         start_ns = view.start_ns
-        panel = self._watched.panel(now_ns, utf8=True)
         kept = {one.mark.order(): one.words() for one in panel.kept}
         return {
-            "clock": self._clock(view, now_ns),
-            "state": self._state(view, panel.status.words()),
             "window_s": self._window_s,
             "near": [_near(row, start_ns) for row in look.near],
             "held": [_near(row, start_ns) for row in look.held],
@@ -110,8 +127,7 @@ class LiveBoard:
                 for kind, rows in panel.look.rows.items()
             ],
             "marks": [
-                _mark(mark, start_ns, kept.get(mark.order(), ""))
-                for mark in self.observers.marks[-_MOST_MARKS:]
+                _mark(mark, start_ns, kept.get(mark.order(), "")) for mark in marks[-_MOST_MARKS:]
             ],
             "places": [
                 {"id": plain(place.name), "about": plain(place.about)}
@@ -301,7 +317,9 @@ def _near(row: NearRow, start_ns: int) -> Board:
         "share": None if row.share is None else round(min(1.0, row.share), 4),
         "last": round((one.last.time_ns - start_ns) / 1e9, 1),
         "since": round((one.since_ns - start_ns) / 1e9, 1),
-        "trend": [None if math.isnan(part.distance) else round(part.distance, 3) for part in one.parts],
+        "trend": [
+            None if math.isnan(part.distance) else round(part.distance, 3) for part in one.parts
+        ],
         "flops": [part.flopped for part in one.parts],
         "members": [],
     }

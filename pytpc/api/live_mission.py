@@ -29,8 +29,10 @@ __all__ = ["KINDS", "Feed", "RecordedFeed", "WatchedMission", "Watching"]
 __all__ += ["fresh_watching"]
 
 _RATE_S = 5.0
-# Ranking a hundred comparisons takes a few hundredths of a second.
+# Ranking a hundred comparisons takes a few hundredths of a second; on a busy machine, longer. It is
+# done again when so many times as long has passed as it took.
 _RANK_S = 0.4
+_RANK_SHARE = 5.0
 _SNAPSHOT_NS = 30 * 10**9
 
 
@@ -137,6 +139,7 @@ class WatchedMission:
         self._believe = believe
         self._rates: deque[tuple[float, int]] = deque()
         self._look: tuple[float, Look, tuple[object, ...]] | None = None
+        self._rank_s = _RANK_S
         self.kept = KeptRankings(options.top)
         self.watching, _ = feed.take(None)
 
@@ -257,10 +260,12 @@ class WatchedMission:
         steady_s = time.monotonic()
         if self._look is not None:
             since, look, before = self._look
-            if of == before or steady_s < since + _RANK_S:
+            if of == before or steady_s < since + self._rank_s:
                 return look
         look = self.watching.look(now_ns, options.top, options.layout)
-        self._look = steady_s, look, of
+        ended_s = time.monotonic()
+        self._rank_s = max(_RANK_S, _RANK_SHARE * (ended_s - steady_s))
+        self._look = ended_s, look, of
         return look
 
     def paint(

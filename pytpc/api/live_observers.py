@@ -194,6 +194,7 @@ class ObserverMissions:
         if self._opened is None or not name:
             return self._base.send(change)
         if name in self._missions:
+            self._send_waiting()
             return self._missions[name].send(change)
         self._waiting.setdefault(name, []).append(change)
         if name not in self._opening:
@@ -205,9 +206,7 @@ class ObserverMissions:
     def tick(self) -> None:
         """Send what waited for its observer to be a node."""
         self._base.tick()
-        for name in [name for name in self._waiting if name in self._missions]:
-            for change in self._waiting.pop(name):
-                self._missions[name].send(change)
+        self._send_waiting()
         for mission in list(self._missions.values()):
             mission.tick()
 
@@ -225,6 +224,11 @@ class ObserverMissions:
         waiting = sum(len(changes) for changes in self._waiting.values())
         found = [self._base, *self._missions.values()]
         return waiting + sum(mission.unheard() for mission in found)
+
+    def _send_waiting(self) -> None:
+        for name in [name for name in self._waiting if name in self._missions]:
+            for change in self._waiting.pop(name):
+                self._missions[name].send(change)
 
     def _open(self, name: str) -> None:
         assert self._opened is not None

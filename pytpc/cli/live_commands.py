@@ -34,8 +34,15 @@ from pytpc.cli.mark_commands import (
     recorded,
     tell_where,
 )
-from pytpc.cli.options import STATIC, TYPES, WINDOW, AskArguments, good_runs, recording_of
-from pytpc.cli.options import refuse_itself
+from pytpc.cli.options import (
+    STATIC,
+    TYPES,
+    WINDOW,
+    AskArguments,
+    good_runs,
+    recording_of,
+    refuse_itself,
+)
 from pytpc.cli.running_graph import RUNNING, UsedGraph
 from pytpc.cli.watch_commands import judged_by, opened_graph, static_to_watch
 from pytpc.diagnosis.question import Question
@@ -238,7 +245,8 @@ def _browser(url: str) -> Iterator[None]:
         page.touch(mode=0o600)
         target = html.escape(url, quote=True)
         page.write_text(
-            f'<!DOCTYPE html><meta charset="utf-8"><meta http-equiv="refresh" content="0;url={target}">'
+            '<!DOCTYPE html><meta charset="utf-8">'
+            f'<meta http-equiv="refresh" content="0;url={target}">'
             f'<a href="{target}">pytpc live</a>\n',
             encoding="utf-8",
         )

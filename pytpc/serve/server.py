@@ -23,7 +23,6 @@ from weakref import WeakSet
 from tornado.httpserver import HTTPServer
 from tornado.httputil import HTTPServerRequest
 from tornado.iostream import IOStream
-from tornado.netutil import bind_sockets
 from tornado.web import Application
 
 from pytpc.api.live_board import Board, LiveBoard
@@ -42,6 +41,7 @@ _EACH_S = 0.1
 _LINE_EACH = 5
 """The open comparison's line is sent with each so-many-th board."""
 _MOST_CONNECTIONS = 200
+_BACKLOG = 64
 _IDLE_S = 30.0
 
 
@@ -77,8 +77,8 @@ class LiveServer:
         """Listen."""
         self._board = board
         self._options = options
-        self._sockets = _bound(options.host, options.port)
-        self.port: int = self._sockets[0].getsockname()[1]
+        self._socket = _bound(options.host, options.port)
+        self.port: int = self._socket.getsockname()[1]
         self.access = Access(names_of(options.host))
         self.pages: set[PageSocket] = set()
         self.answers: dict[str, Answers] = {}
@@ -132,7 +132,7 @@ class LiveServer:
             idle_connection_timeout=_IDLE_S,
             body_timeout=_IDLE_S,
         )
-        server.add_sockets(self._sockets)
+        server.add_socket(self._socket)
         try:
             await self._keep_up()
         finally:
@@ -264,23 +264,26 @@ class _BoundedServer(HTTPServer):
         super().handle_stream(stream, address)
 
 
-def _bound(host: str, port: int) -> list[socket.socket]:
-    """Sockets that listen.
+def _bound(host: str, port: int) -> socket.socket:
+    """A socket that listens.
 
     Raises:
         RunError: nobody can listen there.
     """
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
     try:
-        return bind_sockets(port, host or None)
+        found = socket.create_server((host, port), family=family, backlog=_BACKLOG)
     except socket.gaierror as error:
         raise RunError(f"--host {host}: no address of this machine has this name") from error
     except OSError as error:
         if error.errno == errno.EADDRINUSE:
             what = f"port {port} is in use: choose another one, or 0 for any that is free"
         elif error.errno == errno.EADDRNOTAVAIL:
-            what = f"--host {host}: this machine does not have this address; `hostname -I` lists them"
+            what = (
+                f"--host {host}: this machine does not have this address; `hostname -I` lists them"
+            )
         else:
             what = f"cannot listen at {host} port {port}: {error.strerror}"
         raise RunError(what) from error
-    except OverflowError as error:
-        raise RunError(f"there is no port {port}") from error
+    found.setblocking(False)
+    return found

@@ -48,7 +48,9 @@ class Turning:
         self._near = steady_order(self._near, near)
         # What has no margin is last: the nearest to its exposing statement first.
         held = {
-            key: 1.0 + one.comparison.distance if shares[key] is None else min(1.0, shares[key] or 0)
+            key: 1.0 + one.comparison.distance
+            if shares[key] is None
+            else min(1.0, shares[key] or 0)
             for key, one in found.items()
             if now_ns - one.since_ns >= self._window_ns
         }

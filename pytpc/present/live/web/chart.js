@@ -29,8 +29,9 @@ export class Chart {
   }
 
   async draw(line) {
-    const wanted = ++this.wanted;
     this.clear();
+    const { wanted } = this;
+    this.place.textContent = "Drawing the chart";
     try {
       await bokeh();
     } catch {
@@ -38,6 +39,7 @@ export class Chart {
       return;
     }
     if (wanted !== this.wanted) return;
+    this.place.replaceChildren();
     const { Bokeh } = window;
     this.source = new Bokeh.ColumnDataSource({ data: dataOf(this.newest ?? line) });
     const figure = Bokeh.Plotting.figure({
@@ -74,6 +76,7 @@ export class Chart {
   }
 
   clear() {
+    this.wanted += 1;
     this.source = null;
     this.newest = null;
     this.place.replaceChildren();

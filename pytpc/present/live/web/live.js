@@ -104,7 +104,7 @@ const showBanner = () => {
   if (ended) {
     text = "This page is no longer served here: pytpc live was started again. Open the address that it printed.";
   } else if (link !== null && link.lostSince !== null) {
-    const waiting = link.waiting ? `; ${link.waiting} waiting to be sent, with their own times` : "";
+    const waiting = link.waiting ? `; ${link.waiting} waiting to be sent, each with its own time` : "";
     text = `No connection to pytpc live since ${since(link.lostSince)}, trying again${waiting}.`;
   } else if (state.unsaved) {
     text = state.unsaved;
