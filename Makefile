@@ -1,4 +1,4 @@
-.PHONY: setup package test-package audit demo demo-water demo-navigation demo-ros2 check test test-llvm22 format lint tidy fuzz bench coverage help
+.PHONY: setup package test-package audit demo demo-water demo-navigation demo-ros2 check test test-llvm22 format lint tidy fuzz bench coverage docs docs-serve pictures help
 PYTHON = .venv/bin/python
 
 help:         ## this list
@@ -37,6 +37,20 @@ test:         ## all tests: passes, Python, a real ROS graph
 
 test-llvm22:  ## the passes and their tests with LLVM 22, in build-22
 	tools/test-llvm22
+
+docs:         ## the docs as a site with a search, in out/site: open out/site/index.html
+	@tools/setup docs
+	@tools/build-site
+
+docs-serve:   ## the same, and serves it on http://127.0.0.1:8000 until Ctrl-C
+	@tools/setup docs
+	@tools/build-site
+	@.venv-docs/bin/python -m http.server --bind 127.0.0.1 --directory out/site 8000
+
+pictures:     ## draws docs/images again, from missions that it flies: twenty minutes the first time
+	@tools/setup test
+	$(PYTHON) examples/image_capture/demo.py --out out/demo
+	tools/draw-pictures
 
 test-package: ## installs both packages in empty places and tries them there: half an hour
 	@tools/setup test

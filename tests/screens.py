@@ -17,10 +17,16 @@ from terminals import Terminal
 class Screen:
     """A context manager around a ``Terminal``: ``lines`` is what its user sees."""
 
-    def __init__(self, terminal: Terminal, columns: int = 80, lines: int = 24) -> None:
+    def __init__(
+        self,
+        terminal: Terminal,
+        columns: int = 80,
+        lines: int = 24,
+        kind: type[pyte.Screen] = pyte.Screen,
+    ) -> None:
         self.terminal = terminal
-        self._screen = pyte.Screen(columns, lines)
-        self._stream = pyte.ByteStream(self._screen)
+        self.screen = kind(columns, lines)
+        self._stream = pyte.ByteStream(self.screen)
 
     def __enter__(self) -> Screen:
         self.terminal.__enter__()
@@ -37,7 +43,7 @@ class Screen:
     @property
     def lines(self) -> list[str]:
         """The lines without spaces at their ends."""
-        return [line.rstrip() for line in self._screen.display]
+        return [line.rstrip() for line in self.screen.display]
 
     @property
     def text(self) -> str:
@@ -45,13 +51,13 @@ class Screen:
 
     def bold(self, line: int) -> str:
         """The bold characters of a line, spaces for the others."""
-        cells = self._screen.buffer[line]
-        columns = range(self._screen.columns)
+        cells = self.screen.buffer[line]
+        columns = range(self.screen.columns)
         return "".join(cells[n].data if cells[n].bold else " " for n in columns)
 
     def colours(self) -> set[str]:
         """All colours on the screen."""
-        cells = [cell for line in self._screen.buffer.values() for cell in line.values()]
+        cells = [cell for line in self.screen.buffer.values() for cell in line.values()]
         return {cell.fg for cell in cells} | {cell.bg for cell in cells}
 
     def press(self, keys: str) -> None:
@@ -80,6 +86,6 @@ class Screen:
     def resize(self, columns: int, lines: int) -> None:
         size = struct.pack("HHHH", lines, columns, 0, 0)
         fcntl.ioctl(self.terminal.master, termios.TIOCSWINSZ, size)
-        self._screen.resize(lines, columns)
-        self._screen.reset()
+        self.screen.resize(lines, columns)
+        self.screen.reset()
         self.terminal.process.send_signal(signal.SIGWINCH)

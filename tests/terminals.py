@@ -90,6 +90,10 @@ class Terminal:
         self.process.send_signal(number)
         return self.wait()
 
+    def read(self) -> None:
+        """Take in what is written within a moment."""
+        self._read(0.1)
+
     def _read(self, timeout_s: float) -> None:
         while select.select([self.master], [], [], timeout_s)[0]:
             try:

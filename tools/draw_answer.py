@@ -10,6 +10,8 @@ from __future__ import annotations
 import argparse
 import shutil
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from selenium import webdriver
@@ -18,7 +20,7 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import WebDriverWait
 
 ROOT = Path(__file__).resolve().parent.parent
-WIDTH, HEIGHT = 1120, 1600
+WIDTH, HEIGHT, PAGE_HEIGHT = 1120, 1600, 1150
 PATIENCE_S = 60
 
 # The section of the mission that is drawn; its figure counts as drawn when Bokeh has drawn it.
@@ -59,6 +61,23 @@ def main() -> None:
 
 def picture(page: Path, mission: str | None) -> bytes:
     """The answer about a mission as PNG, in light colours."""
+    with opened(page, mission, HEIGHT) as (browser, panel):
+        browser.execute_script(BARE)
+        shot: bytes = browser.find_element(By.CSS_SELECTOR, f"#{panel} .answer").screenshot_as_png
+        return shot
+
+
+def page_picture(page: Path, mission: str | None) -> bytes:
+    """The page as it opens at a mission, as PNG, in light colours."""
+    with opened(page, mission, PAGE_HEIGHT) as (browser, panel):
+        browser.execute_script("arguments[0].scrollIntoView()", browser.find_element(By.ID, panel))
+        shot: bytes = browser.get_screenshot_as_png()
+        return shot
+
+
+@contextmanager
+def opened(page: Path, mission: str | None, height: int) -> Iterator[tuple[webdriver.Chrome, str]]:
+    """A browser in which a mission of a page is drawn, and the id of its section."""
     programs = [shutil.which(name) for name in ("chromium", "chromedriver")]
     if None in programs:
         sys.exit("draw-answer: chromium and chromedriver are not installed; `make test` does that")
@@ -72,7 +91,7 @@ def picture(page: Path, mission: str | None) -> bytes:
         "--hide-scrollbars",
     ):
         options.add_argument(argument)
-    options.add_argument(f"--window-size={WIDTH},{HEIGHT}")
+    options.add_argument(f"--window-size={WIDTH},{height}")
     browser = webdriver.Chrome(options=options, service=Service(str(programs[1])))
     try:
         browser.get(page.absolute().as_uri())
@@ -82,9 +101,7 @@ def picture(page: Path, mission: str | None) -> bytes:
             sys.exit(f"draw-answer: {page}: {which}")
         patience = WebDriverWait(browser, PATIENCE_S)
         patience.until(lambda driver: driver.execute_script(READY, panel))
-        browser.execute_script(BARE)
-        shot: bytes = browser.find_element(By.CSS_SELECTOR, f"#{panel} .answer").screenshot_as_png
-        return shot
+        yield browser, panel
     finally:
         browser.quit()
 

@@ -130,13 +130,20 @@ class Film:
             at_s = self.frames.pop().at_s
         self.frames.append(Frame(at_s, lines))
 
-    def draw(self, title: str, description: str, end_s: float) -> str:
+    def draw(
+        self,
+        title: str,
+        description: str,
+        end_s: float,
+        made_by: str = "tools/draw-terminal from a real session",
+    ) -> str:
         """The film as an SVG that begins again at ``end_s``.
 
         Args:
             title: what it is, in a few words, for those who cannot see it.
             description: what happens in it.
             end_s: until then the last frame stays.
+            made_by: the program and what it showed.
         """
         count = max(len(frame.lines) for frame in self.frames)
         width = 2 * EDGE + COLUMN * max(1, self._columns())
@@ -148,7 +155,7 @@ class Film:
         return (
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {size}" width="{width:g}"'
             f' height="{height:g}" role="img" aria-labelledby="title desc">\n'
-            "<!-- Made by tools/draw-terminal from a real session. Do not edit. -->\n"
+            f"<!-- Made by {made_by}. Do not edit. -->\n"
             f'<title id="title">{escape(title)}</title>\n'
             f'<desc id="desc">{escape(description)}</desc>\n'
             f"<style>\n{style}</style>\n"

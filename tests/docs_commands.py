@@ -1,0 +1,118 @@
+"""The command lines that the pages show, and which of them no test can run."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import tomllib
+from check_docs import SHELLS, Page
+
+ROOT = Path(__file__).parents[1]
+NOT_RUN = ROOT / "tests/docs/not_run.toml"
+PATTERNS = ["README.md", "CONTRIBUTING.md", "docs/*.md"]
+# A block without a language is a shell's if its first line begins with one of these; else it shows
+# a file, a message or an output.
+PROGRAMS = re.compile(
+    r"\.|\.venv/bin/\w+|tools/[\w-]+|cat|cd|chmod|colcon|cp|curl|docker|eval|export|git|ls|make"
+    r"|mkdir|ninja|opt(-\d+)?|pip|pytpc|python3|ros2|rosbag|roscore|roslaunch|rosparam|rosrun"
+    r"|rostopic|scp|source|ssh|sudo"
+)
+COMMENT = re.compile(r"\s+#( .*)?$")
+
+
+class Command(NamedTuple):
+    """A command line of a page.
+
+    ``block`` counts the blocks of the page. ``output`` has the lines that the page shows below the
+    commands of the block: they are those of one of them.
+    """
+
+    page: str
+    line: int
+    block: int
+    text: str
+    output: tuple[str, ...] = ()
+
+    @property
+    def place(self) -> str:
+        return f"{self.page}:{self.line}"
+
+
+class Unclear(NamedTuple):
+    """A line of a shell's block that is neither a command nor an output."""
+
+    place: str
+    text: str
+
+
+def pages() -> list[str]:
+    """The pages whose commands are run, relative to ROOT."""
+    words = ["git", "ls-files", "--cached", "--others", "--exclude-standard", *PATTERNS]
+    names = subprocess.check_output(words, cwd=ROOT, text=True).splitlines()
+    return sorted(name for name in names if (ROOT / name).is_file())
+
+
+def commands(name: str, path: Path | None = None) -> list[Command | Unclear]:
+    """The command lines of a page in their order; ``path`` is where it is if not below ROOT."""
+    found: list[Command | Unclear] = []
+    for number, token in enumerate(Page(path or ROOT / name).tokens):
+        if token.type in {"fence", "code_block"} and token.map:
+            first = token.map[0] + 1 + (token.type == "fence")
+            language = token.info.strip()
+            if language in SHELLS:
+                found += _of_block(name, number, first, language, token.content)
+    return found
+
+
+def _of_block(
+    name: str, block: int, first: int, language: str, content: str
+) -> Iterator[Command | Unclear]:
+    lines = content.splitlines()
+    prompted = any(line.lstrip().startswith("$ ") for line in lines)
+    if not prompted and language == "" and not _is_command(lines[0] if lines else ""):
+        return
+    found: list[Command | Unclear] = []
+    output: list[str] = []
+    joined, begin, after_gap = "", first, False
+    for number, line in enumerate(lines, first):
+        text = line.strip()
+        begin = begin if joined else number
+        if not joined:
+            after_gap = after_gap or not text
+            if not text or text.startswith("#"):
+                continue
+            if prompted and not text.startswith("$ "):
+                output.append(text)
+                continue
+            if not prompted and not _is_command(text):
+                if after_gap:
+                    output.append(text)
+                else:
+                    found.append(Unclear(f"{name}:{number}", text))
+                continue
+        joined += text.removeprefix("$ ")
+        if joined.endswith("\\"):
+            joined = joined[:-1]
+            continue
+        found.append(Command(name, begin, block, COMMENT.sub("", joined).strip()))
+        joined = ""
+    for each in found:
+        yield each._replace(output=tuple(output)) if isinstance(each, Command) else each
+
+
+def _is_command(line: str) -> bool:
+    """Whether a line begins with a program that is known, after variables that are set for it."""
+    words = line.strip().removeprefix("$ ").split()
+    while words and re.fullmatch(r"[A-Z_]+=\S*", words[0]):
+        words = words[1:]
+    return bool(words) and PROGRAMS.fullmatch(words[0]) is not None
+
+
+def not_run() -> dict[str, dict[str, str]]:
+    """Of each page the commands that no test runs, with the reason."""
+    with NOT_RUN.open("rb") as stream:
+        return tomllib.load(stream)
