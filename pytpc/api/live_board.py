@@ -18,6 +18,7 @@ from pytpc.api.live_observers import Answer, Observers
 from pytpc.base.wording import plain, show
 from pytpc.diagnosis.ranking.turning import Turning
 from pytpc.diagnosis.results.live import LiveRow, Seen
+from pytpc.diagnosis.results.turn_groups import TurnGroup
 from pytpc.diagnosis.results.turning import Compared, NearRow
 from pytpc.present.marking_terminal import RecordedMission
 from pytpc.present.page.source import source_lines, way_of
@@ -33,6 +34,7 @@ MOST_ROWS = 50
 _MOST_TURNS = 30
 _MOST_MARKS = 100
 _MOST_CHOICES = 300
+_MOST_MEMBERS = 20
 _QUIET_S = 3.0
 """Without a report for so long, the page says so: the default sink sends one each second."""
 _AGAIN_NS = 500_000_000
@@ -112,17 +114,18 @@ class LiveBoard:
         look = self._turning.look(self._watched.watching, now_ns, MOST_ROWS)
         start_ns = view.start_ns
         kept = {one.mark.order(): one.words() for one in panel.kept}
+        groups = _Groups(panel.look.groups)
         return {
             "window_s": self._window_s,
-            "near": [_near(row, start_ns) for row in look.near],
-            "held": [_near(row, start_ns) for row in look.held],
+            "near": groups.named([_near(row, start_ns) for row in look.near]),
+            "held": groups.named([_near(row, start_ns) for row in look.held]),
             "turns": self._turns(look.turns[:_MOST_TURNS], start_ns),
             "suspects": [
                 {
                     "id": kind or "combined",
                     "title": _TITLES[kind],
                     "reason": plain(panel.look.reasons[kind]),
-                    "rows": [_suspect(row, now_ns, start_ns) for row in rows],
+                    "rows": groups.joined([_suspect(row, now_ns, start_ns) for row in rows]),
                 }
                 for kind, rows in panel.look.rows.items()
             ],
@@ -284,6 +287,41 @@ class LiveBoard:
         return found[::-1]
 
 
+class _Groups:
+    """Says at rows which comparisons turn as one with them."""
+
+    def __init__(self, groups: Sequence[TurnGroup]) -> None:
+        self._of = {
+            (one.key, plain(one.node)): group
+            for group in groups
+            if len(group.parameters) > 1
+            for one in group.members
+        }
+
+    def named(self, rows: list[Board]) -> list[Board]:
+        """The rows; each names the others of its group."""
+        return [row | self._with(row) for row in rows]
+
+    def joined(self, rows: list[Board]) -> list[Board]:
+        """The same; one row stands for all of a group, the first one."""
+        seen: set[int] = set()
+        found = []
+        for row in rows:
+            group = self._of.get((row["key"], row["node"]))
+            if group is None or id(group) not in seen:
+                found.append(row | self._with(row))
+            if group is not None:
+                seen.add(id(group))
+        return found
+
+    def _with(self, row: Board) -> Board:
+        group = self._of.get((row["key"], row["node"]))
+        if group is None:
+            return {"members": [], "turning": ""}
+        others = [plain(name) for name in group.parameters if plain(name) != row["parameter"]]
+        return {"members": others[:_MOST_MEMBERS], "turning": group.text}
+
+
 def _about(comparison: Comparison, seen: Seen | None) -> Board:
     """What is shown of a comparison wherever it stands."""
     found: Board = {
@@ -321,7 +359,6 @@ def _near(row: NearRow, start_ns: int) -> Board:
             None if math.isnan(part.distance) else round(part.distance, 3) for part in one.parts
         ],
         "flops": [part.flopped for part in one.parts],
-        "members": [],
     }
 
 

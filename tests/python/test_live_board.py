@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from live_samples import board_of, mission
-from mission_samples import comparison, key, ns, static_info
+from mission_samples import comparison, events, key, ns, static_info
 
 from patience import wait_for
 from pytpc.api.live_board import LiveBoard
@@ -22,6 +22,7 @@ from pytpc.diagnosis.results.live import Seen
 from pytpc.recording.graph_places import Place
 from pytpc.recording.marking_session import MarkChange, View
 from pytpc.recording.marks import Mark, read_marks
+from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summary
 from pytpc.serve.board_changes import changes, is_news
 from pytpc.static.link_unit import Transform
@@ -376,3 +377,25 @@ def test_changes_rebuild_the_board(board: LiveBoard):
     assert changes(last, now) == {}
     assert not is_news({"clock": {"is": 1}})
     assert is_news({"near": {"rows": []}})
+
+
+# ~a and ~b turn together at 5, 15 and 25 s, ~c alone at 8 and 18 s.
+def test_what_turns_as_one_is_one_suspect(tmp_path: Path):
+    static = static_info(*(comparison(n, name) for n, name in enumerate(("~a", "~b", "~c"))))
+    rows = []
+    for step in range(300):
+        t = step / 10
+        on, other = (t - 5) // 10 % 2 == 0, (t - 8) // 10 % 2 == 0
+        rows += [(t, 0, on, on, 0.5), (t + 0.01, 1, not on, not on, 0.5)]
+        rows.append((t + 0.02, 2, other, other, 0.5))
+    recording = Recording("flight", events(rows, node="/robot"), (), 0, ns(30))
+    shown = at(board_of(tmp_path, static, recording), 29)
+    for ranking in shown["suspects"]:
+        members = {row["parameter"]: (row["members"], row["turning"]) for row in ranking["rows"]}
+        assert members.pop("~c") == ([], "")
+        ((first, (others, turning)),) = members.items()
+        assert {first, *others} == {"~a", "~b"}
+        assert turning == "turned together, 3 times"
+    # Of comparisons, each keeps its row.
+    near = {row["parameter"]: row["members"] for row in shown["near"]}
+    assert near == {"~a": ["~b"], "~b": ["~a"], "~c": []}

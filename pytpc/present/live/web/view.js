@@ -90,6 +90,8 @@ const comparisonRow = () => {
   return item;
 };
 
+const withText = (row) => (row.members.length ? `with ${row.members.join(", ")}: they ${row.turning}` : "");
+
 const fillNear = (item, row) => {
   const { name, now, text, trend: svg, code, file } = item.parts;
   put(name, row.parameter);
@@ -97,7 +99,7 @@ const fillNear = (item, row) => {
   put(text, marginText(row));
   text.title = row.in_unit ? "by so much the parameter would have to change" : "* difference of the compared values";
   drawTrend(svg, row);
-  put(code, "");
+  put(code, withText(row));
   put(file, ` · ${fileOf(row)}`);
   item.row.dataset.key = row.key;
   item.classList.toggle("near-it", row.share !== null && row.share < NEAR);
@@ -139,6 +141,8 @@ const fillSuspect = (item, row) => {
   text.title = "score: a low one is suspicious";
   margin.firstChild.toggleAttribute("hidden", true);
   put(code, `${fileOf(row)}  ${row.code}`);
+  if (!item.parts.others) item.row.append((item.parts.others = make("span", "code")));
+  put(item.parts.others, withText(row));
   item.row.dataset.key = row.key;
 };
 const ageSuspect = (item, row, now) =>
