@@ -278,7 +278,7 @@ class SegmentName:
         self.next = 1
 
 
-def _created(config: Config, node: str, of: SegmentName | None = None) -> tuple[str, int, int]:
+def _created(config: Config, node: str, of: SegmentName | None = None) -> tuple[str, int]:
     """The path of a new file, and a descriptor of that path with ``.new`` added.
 
     The file gets its name when it can be read. Until then ``.new`` keeps processes of other
