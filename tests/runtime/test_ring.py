@@ -88,8 +88,9 @@ def test_killed_while_it_turns(program, settings, tmp_path, seed):
     for done, numbers in zip(counted.done, numbers_of(files, threads), strict=True):
         assert numbers, "a thread has no report"
         # Without gaps, from the first one kept to the last one made; the kill may have come
-        # between the record and the count.
-        assert numbers[-1] - done in (-1, 0)
+        # between the record and the count. If the thread of the ring gets no processor for so long
+        # that a file has the whole budget, what comes meanwhile is counted as not recorded.
+        assert -1 <= done - 1 - numbers[-1] <= lost or numbers[-1] == done
         assert lost or numbers == list(range(numbers[0], numbers[-1] + 1))
         if budget == "4096":
             assert numbers[0] == 0 or len(files) > 8
