@@ -303,7 +303,8 @@ def node_files(since_ns: int) -> NodeFiles:
     """The files of nodes that were written since a time (ns since 1970), as far as they are here.
 
     A running robot's nodes write to a folder of their own, not to that of the recording
-    (docs/reference/runtime.md).
+    (docs/reference/runtime.md). Files of rings are left out: what is in them also goes over the
+    graph, unless the sink is `file`, and `pytpc keep` keeps them.
     """
     folder = files_folder(os.environ)
-    return NodeFiles(folder, FileCounter(folder, since_ns).count().files)
+    return NodeFiles(folder, FileCounter(folder, since_ns, rings=False).count().files)

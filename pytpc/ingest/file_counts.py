@@ -31,11 +31,13 @@ class FileCounter:
     Args:
         folder: it need not exist.
         since_ns: leave out files that were last written before this time, in ns since 1970.
+        rings: count the files of rings, too.
     """
 
-    def __init__(self, folder: Path, since_ns: int = 0) -> None:
+    def __init__(self, folder: Path, since_ns: int = 0, *, rings: bool = True) -> None:
         self._folder = folder
         self._since_ns = since_ns
+        self._rings = rings
         self._full: dict[tuple[str, int], int] = {}
 
     def count(self) -> FileCounts:
@@ -58,7 +60,9 @@ class FileCounter:
         with path.open("rb", buffering=0) as stream:
             if os.fstat(stream.fileno()).st_mtime_ns < self._since_ns:
                 return None
-            FileHeader.of(stream.read(layout.HEADER_BYTES) or b"")
+            header = FileHeader.of(stream.read(layout.HEADER_BYTES) or b"")
+            if header.segment and not self._rings:
+                return None
             file = ChunkFile(path, stream.fileno())
             reports = 0
             for thread in file.find(lambda _: None):

@@ -82,7 +82,9 @@ class MappedFile:
         self._is_growing = False
         self.is_stopped = False
         self._is_closed = False
-        self.path, self._descriptor, self._segment = _created(config, node, of)
+        self.path, self._descriptor = _created(config, node, of)
+        if of is not None:
+            self._segment = of.next - 1
         its = os.fstat(self._descriptor)
         self.identity = (its.st_dev, its.st_ino)
         try:
@@ -276,8 +278,8 @@ class SegmentName:
         self.next = 1
 
 
-def _created(config: Config, node: str, of: SegmentName | None = None) -> tuple[str, int, int]:
-    """The path of a new file, a descriptor of it with ``.new`` added, and its number in a ring.
+def _created(config: Config, node: str, of: SegmentName | None = None) -> tuple[str, int]:
+    """The path of a new file, and a descriptor of that path with ``.new`` added.
 
     The file gets its name when it can be read. Until then ``.new`` keeps processes of other
     containers, which may have the same number and so the same names, from using it.
@@ -291,11 +293,10 @@ def _created(config: Config, node: str, of: SegmentName | None = None) -> tuple[
     name = "".join(c if c.isascii() and (c.isalnum() or c in "_-") else "_" for c in name)[:100]
     began_s = time_ns() // SECOND if of is None else of.began_s
     stem = os.path.join(folder, f"{name or 'process'}-{os.getpid()}-{began_s}")
-    segment = 0
     for number in range(1, 1000):
         if of is not None:
-            segment, of.next = of.next, of.next + 1
-            path = f"{stem}-{segment:04}.tpc"
+            path = f"{stem}-{of.next:04}.tpc"
+            of.next += 1
         else:
             path = f"{stem}-{number}.tpc" if number > 1 else f"{stem}.tpc"
         flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC
@@ -304,7 +305,7 @@ def _created(config: Config, node: str, of: SegmentName | None = None) -> tuple[
         except FileExistsError:
             continue
         if not os.path.exists(path):
-            return path, descriptor, segment
+            return path, descriptor
         os.close(descriptor)
         os.unlink(f"{path}.new")
     raise FileExistsError(17, "File exists", stem)

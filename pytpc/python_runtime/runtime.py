@@ -297,9 +297,14 @@ class Runtime:
         if config.sink == "off":
             return
         if to_file is None:
-            # It could not be begun with the sink.
+            # It could not be begun with the sink, which goes on as it is until it can.
             if ring.is_due(None):
-                self._choose(self.config)
+                try:
+                    self.file = self._new_file(config)
+                except OSError as error:
+                    ring.failed(error)
+                else:
+                    self._choose(self.config)
             return
         if old is not None:
             old.look(monotonic_ns())

@@ -19,6 +19,7 @@ from test_python_runtime_file import PRELUDE, ROOT
 
 from patience import PATIENCE_S, wait_for
 from pytpc.api.keeping import KeepOptions, keep
+from pytpc.api.record import node_files
 from pytpc.base.errors import InputError, RunError
 from pytpc.cli.main import main
 from pytpc.ingest.reading import read
@@ -197,6 +198,15 @@ def test_files_of_no_ring_are_named(tmp_path):
     kept = keep(KeepOptions(tpc), tmp_path / "kept")
     assert kept.files == 1
     assert kept.missing[1].startswith(f"1 file in {tpc} of no ring")
+
+
+def test_record_does_not_ask_for_files_of_rings(tmp_path, monkeypatch):
+    """What is in them came over the graph as well."""
+    run(tmp_path, "over(site('one'), 1, 2)")
+    monkeypatch.setenv("TPC_FOLDER", str(tmp_path))
+    assert node_files(0).files == 0
+    run(tmp_path, "over(site('one'), 1, 2)", TPC_RING="")
+    assert node_files(0).files == 1
 
 
 def test_while_it_is_written(tmp_path):

@@ -265,6 +265,35 @@ def test_a_folder_that_cannot_be_written(tmp_path):
     assert len(done.stderr.splitlines()) == 1
 
 
+def test_a_folder_that_can_be_written_later(tmp_path):
+    """The ring begins then; the comparison is not reported again as if it were a new one."""
+    (tmp_path / "file").write_text("")
+    done = run(
+        tmp_path / "file",
+        """
+        import pytpc.python_runtime.ring as ring
+        ring._AGAIN_NS = 1
+        one = site("one")
+        for _ in range(300):
+            over(one, 1, 2)
+            time.sleep(0.001)
+        policy = RUNTIME._edges
+        os.unlink(os.environ["TPC_FOLDER"])
+        while RUNTIME.file is None:
+            assert RUNTIME._edges is policy or RUNTIME.file
+            time.sleep(0.001)
+        for _ in turned(2):
+            over(one, 1, 2)
+            time.sleep(0.001)
+        """,
+        TPC_SINK="auto",
+        **SHORT,
+    )
+    assert done.returncode == 0, done.stderr
+    assert len(done.stderr.splitlines()) == 1
+    assert len(files(tmp_path / "file")) >= 2
+
+
 @pytest.mark.parametrize(
     ("name", "text", "why"),
     [

@@ -88,8 +88,9 @@ def test_killed_while_it_turns(program, settings, tmp_path, seed):
     for done, numbers in zip(counted.done, numbers_of(files, threads), strict=True):
         assert numbers, "a thread has no report"
         # Without gaps, from the first one kept to the last one made; the kill may have come
-        # between the record and the count.
-        assert numbers[-1] - done in (-1, 0)
+        # between the record and the count. If the thread of the ring gets no processor for so long
+        # that a file has the whole budget, what comes meanwhile is counted as not recorded.
+        assert -1 <= done - 1 - numbers[-1] <= lost or numbers[-1] == done
         assert lost or numbers == list(range(numbers[0], numbers[-1] + 1))
         if budget == "4096":
             assert numbers[0] == 0 or len(files) > 8
@@ -124,8 +125,9 @@ def test_within_the_minutes(program, settings, tmp_path):
     names = sorted(path.name for path in counted.folder.glob("*.tpc"))
     assert len(names) <= 12
     assert all(f"-{counted.pid}-" in name for name in names)
-    first, last = segments(counted.folder)[0], segments(counted.folder)[-1]
-    assert last.syncs[-1][0] - first.syncs[0][0] >= 2_500_000_000
+    # The last file may have been made this moment, and have nothing yet.
+    syncs = [steady for file in segments(counted.folder) for steady, *_ in file.syncs]
+    assert max(syncs) - min(syncs) >= 2_500_000_000
 
 
 def _has(folder: Path, number: int) -> bool:
