@@ -288,13 +288,14 @@ def _pair(old: Site, new: Site, is_declared: Callable[[Site], bool]) -> Comparis
 
 
 def _has_moved(old: Site, new: Site) -> bool:
-    one, other = old.tpc, new.tpc
-    return (one.package, one.place, one.lineno, old.function) != (
-        other.package,
-        other.place,
-        other.lineno,
-        new.function,
-    )
+    return _where(old) != _where(new)
+
+
+def _where(one: Site) -> tuple[str, str, int, str]:
+    """The place in its package; outside of all packages, a workspace has paths of its own."""
+    place = one.tpc.place
+    file = PurePosixPath(place).name if place.startswith("/") else place
+    return one.tpc.package, file, one.tpc.lineno, one.function
 
 
 _SpotIdentity = tuple[str, str, str, str | None, str | None, str]

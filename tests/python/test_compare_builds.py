@@ -95,6 +95,12 @@ def test_a_workspace_elsewhere_is_the_same_code() -> None:
     assert found.counts["same"] == 1
 
 
+def test_a_header_outside_of_the_packages_is_where_its_workspace_is() -> None:
+    old, new = comparison(file="/ws/src/base/base.h"), comparison(file="/ci/42/base/base.h")
+    assert changes_between(of(old), of(new)).counts["same"] == 1
+    assert changes_between(of(old), of({**new, "lineno": 41})).counts["moved"] == 1
+
+
 # A header in two programs is one place: it counts once, before and after.
 def test_a_place_in_two_link_units_counts_once() -> None:
     both = [
