@@ -220,8 +220,8 @@ def test_text_and_arguments(built: Path):
     ran = told(built, built / "src/robot/launch/robot.launch", "gain:=12", "--kind", "range")
     lines = ran.stdout.splitlines()
     assert lines[0].endswith(
-        "robot.launch:5: warning: /guard/gain is 12, outside of what is declared: 0 to 10; its server"
-        " makes 10 of it [range]"
+        "robot.launch:5: warning: /guard/gain is 12, outside of what is declared: 0 to 10; its"
+        " server makes 10 of it [range]"
     )
     assert lines[1].endswith("Guard.cfg:5: declared")
     assert lines[2:] == ["1 warning: 13 values of 2 nodes"]
