@@ -158,6 +158,8 @@ class Robot:
         angle: Angle = angle_of(unit, read)
         if not angle and texts.converts(own_part(name)):
             angle = "degrees"
+        elif not angle and texts.turns(own_part(name)):
+            angle = "radians"
         return NodeRead(
             name,
             read.api,

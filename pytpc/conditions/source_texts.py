@@ -26,6 +26,11 @@ _DEGREES = re.compile(
     r"|(?:M_PI|math\.pi|\bpi|PI)\s*/\s*180|/\s*180(?:\.0*)?f?\s*\*\s*(?:M_PI|math\.pi|pi)",
     re.IGNORECASE,
 )
+# Functions that take an angle in radians.
+_RADIANS = re.compile(
+    r"\b(?:sin|cos|tan|sinf|cosf|setRPY|setEuler|setYaw|createQuaternion\w*|quaternion_from_euler"
+    r"|normalize_angle\w*|shortest_angular_distance|AngleAxis\w?)\s*\("
+)
 _NOT_SOURCES = frozenset({"build", "devel", "install", "log", "test", "tests", "__pycache__"})
 _LARGEST = 4 << 20
 _BESIDE = 2
@@ -38,13 +43,15 @@ class SourceTexts:
 
     ``texts`` has for each text, without its namespace, its places: file and line. ``sets`` are the
     names, without namespaces, of parameters that code sets. ``reads_all`` says that code reads all
-    parameters of a namespace. ``converted`` are lines in which an angle in degrees is converted.
+    parameters of a namespace. ``converted`` are lines in which an angle in degrees is converted,
+    ``turned`` those in which a function takes one in radians.
     """
 
     texts: dict[str, list[tuple[str, int]]]
     sets: frozenset[str]
     reads_all: bool
     converted: tuple[str, ...]
+    turned: tuple[str, ...] = ()
 
     def unread(self, reads: Collection[tuple[str, int]], *, python: bool) -> frozenset[str]:
         """The texts in the files of a language at other places than beside one of these reads."""
@@ -52,15 +59,24 @@ class SourceTexts:
         return frozenset(
             text
             for text, places in self.texts.items()
-            if any(
-                place not in beside for place in places if place[0].endswith(_CPP) is not python
-            )
+            if any(place not in beside for place in places if place[0].endswith(_CPP) is not python)
         )
 
     def converts(self, name: str) -> bool:
         """Whether what has the name of a parameter is converted from degrees somewhere."""
-        word = re.compile(rf"(?<![A-Za-z0-9]){re.escape(name.rstrip('_'))}(?![A-Za-z0-9])")
-        return any(word.search(line) for line in self.converted)
+        return _stands_in(name, self.converted)
+
+    def turns(self, name: str) -> bool:
+        """Whether what has the name of a parameter goes to a function that takes radians.
+
+        A name of one word may be that of something else.
+        """
+        return "_" in name and _stands_in(name, self.turned)
+
+
+def _stands_in(name: str, lines: Collection[str]) -> bool:
+    word = re.compile(rf"(?<![A-Za-z0-9_]){re.escape(name.rstrip('_'))}(?![A-Za-z0-9])")
+    return any(word.search(line) for line in lines)
 
 
 @lru_cache(maxsize=256)
@@ -69,6 +85,7 @@ def source_texts(package: str) -> SourceTexts:
     texts: dict[str, list[tuple[str, int]]] = {}
     sets: set[str] = set()
     converted: list[str] = []
+    turned: list[str] = []
     reads_all = False
     for path in _sources(package):
         lines = _read(path)
@@ -81,7 +98,9 @@ def source_texts(package: str) -> SourceTexts:
             reads_all = reads_all or _READS_ALL.search(line) is not None
             if _DEGREES.search(line):
                 converted.append(line)
-    return SourceTexts(texts, frozenset(sets), reads_all, tuple(converted))
+            elif _RADIANS.search(line):
+                turned.append(line)
+    return SourceTexts(texts, frozenset(sets), reads_all, tuple(converted), tuple(turned))
 
 
 def _last(name: str) -> str:

@@ -63,7 +63,7 @@ def _unit(name: str, reads: list[NodeRead]) -> tuple[Angle, str]:
     if units == {"degrees"}:
         unit, because = "degrees", "the code makes radians of it"
     elif units == {"radians"}:
-        unit, because = "radians", "the code compares it with an angle in radians"
+        unit, because = "radians", "the code takes it in radians"
     elif units or words & (_DEGREES | _NO_ANGLES):
         pass
     elif words & _RADIANS:

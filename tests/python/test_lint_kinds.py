@@ -203,8 +203,7 @@ def test_limits_that_do_not_contradict(values: dict[str, object]):
         ("fov_rad", 90.0, read("", 0.0),
          "which seems to be in degrees (1.5708 rad): its name says radians"),
         ("limit", 45.0, read("", 0.0, angle="radians"),
-         "which seems to be in degrees (0.785398 rad): the code compares it with an angle in"
-         " radians"),
+         "which seems to be in degrees (0.785398 rad): the code takes it in radians"),
         ("max_turn_rate", 90.0, read("", 1.0),
          "which seems to be in degrees (1.5708 rad): its default, 1, is in radians"),
         ("max_angle", 1.5708, read("", 30.0, angle="degrees"),

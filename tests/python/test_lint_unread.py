@@ -40,8 +40,8 @@ def test_the_right_name_in_another_namespace(name: str):
 
 def test_a_node_that_is_not_started_under_this_name():
     other = node(read("/robot/arm/speed", 1.0), name="/robot/arm")
-    [(_, text)] = said(unread(facts({"/robot/gaurd/rate": 5}, node(LIMIT), other)).findings)
-    assert text == "no node reads /robot/gaurd/rate; did you mean the node /robot/guard?"
+    [(_, text)] = said(unread(facts({"/robot/guards/rate": 5}, node(LIMIT), other)).findings)
+    assert text == "no node reads /robot/guards/rate; did you mean the node /robot/guard?"
 
 
 @pytest.mark.parametrize(

@@ -119,7 +119,7 @@ def test_a_place_that_is_not_there(tmp_path: Path):
 
 def test_texts_that_stand_beside_no_read(package: Path):
     (package / "other.hpp").write_text(
-        'nh.setParam("made", 1);\nx = angles::from_degrees(tilt_);\n'
+        'nh.setParam("made", 1);\nx = angles::from_degrees(tilt_);\ny = cos(max_yaw_) + sin(yaw);\n'
     )
     found = source_texts(str(package))
     cpp, python = f"{package}/guard.cpp", f"{package}/guard.py"
@@ -134,6 +134,8 @@ def test_texts_that_stand_beside_no_read(package: Path):
     assert not found.reads_all
     assert found.converts("tilt")
     assert not found.converts("til")
+    assert found.turns("max_yaw")
+    assert not found.turns("yaw")
 
 
 def test_code_that_reads_all(tmp_path: Path):

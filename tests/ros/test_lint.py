@@ -140,7 +140,7 @@ guard:
   spare: 1   # tpc-lint: ignore unread
 arm:
   rate: fast
-gaurd:
+guards:
   frame: map
 """
 CLEAN = """\
@@ -196,7 +196,7 @@ EXPECTED = [
     ("params.yaml", 7, "unread"),  # it is read as arm/reach
     ("params.yaml", 10, "deprecated"),
     ("params.yaml", 13, "type"),  # a text for a rate
-    ("params.yaml", 15, "unread"),  # no node /gaurd
+    ("params.yaml", 15, "unread"),  # no node /guards
     ("robot.launch", 6, "set-twice"),
     ("arm.py", 6, "unset"),
     ("guard.cpp", 15, "unset"),
@@ -212,7 +212,7 @@ def test_findings(built: Path):
     assert texts == {
         "/guard does not read /guard/min_distnace",
         "/guard does not read /guard/reach; it would be read as /guard/arm/reach",
-        "no node reads /gaurd/frame; it would be read as /guard/frame",
+        "no node reads /guards/frame; it would be read as /guard/frame",
     }
 
 
@@ -220,8 +220,8 @@ def test_text_and_arguments(built: Path):
     ran = told(built, built / "src/robot/launch/robot.launch", "gain:=12", "--kind", "range")
     lines = ran.stdout.splitlines()
     assert lines[0].endswith(
-        "robot.launch:5: warning: /guard/gain is 12, outside of what is declared: 0 to 10; its server"
-        " makes 10 of it [range]"
+        "robot.launch:5: warning: /guard/gain is 12, outside of what is declared: 0 to 10; its"
+        " server makes 10 of it [range]"
     )
     assert lines[1].endswith("Guard.cfg:5: declared")
     assert lines[2:] == ["1 warning: 13 values of 2 nodes"]
