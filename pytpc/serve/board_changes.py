@@ -12,8 +12,8 @@ def changes(before: Board | None, after: Board) -> Board:
 
     Returns:
         For each part that differs: a list of rows as ``{"order": ids, "rows": new and changed
-        ones}`` (``order`` only if that changed), any other part as ``{"is": value}``. Everything, if
-        there was none before.
+        ones}`` (``order`` only if that changed), any other part as ``{"is": value}``.
+        Everything, if there was none before.
 
     >>> one = {"near": [{"id": "a", "v": 1}, {"id": "b", "v": 1}], "window_s": 12}
     >>> two = {"near": [{"id": "a", "v": 1}, {"id": "b", "v": 2}], "window_s": 12}

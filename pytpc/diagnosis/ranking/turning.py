@@ -1,7 +1,7 @@
 """Which comparisons are nearest to turning, and which have not turned for long.
 
 This ranks comparisons, not suspects: it says what the robot decides now. The margin is that of
-the score of type II (SPEC: D), of the last evaluation alone.
+the score of type II (D in docs/reference/scores.md), of the last evaluation alone.
 """
 
 from __future__ import annotations
