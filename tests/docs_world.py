@@ -14,6 +14,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -204,13 +205,21 @@ class Reader:
         return self
 
     def __exit__(self, *_: object) -> None:
+        # A program that is killed leaves what it started; one that is interrupted ends it.
         while self._running:
-            self._running.pop()[1].__exit__()
+            with self._running.pop()[1] as terminal, suppress(AssertionError, OSError):
+                terminal.press("\x03")
+                terminal.wait(PATIENCE_S)
 
     def read(self, block: Sequence[Command]) -> None:
         """Type the commands of a block, and compare what the page shows below them."""
         self._said = []
         texts = [spelt(command.text) for command in block]
+        # Each section begins anew: `record` refuses a folder that has a recording.
+        for again in re.findall(
+            r"(?:pytpc record -o|rosbag record -O) (out/\w+)", "\n".join(texts)
+        ):
+            shutil.rmtree(self._world.home / again, ignore_errors=True)
         starts = any(re.search(BEGIN + STARTS_A_GRAPH, text) for text in texts)
         if not starts and any(re.search(BEGIN + ASKS_A_GRAPH, text) for text in texts):
             self._start('eval "$(pytpc env --setup ws)"; roslaunch my_robot robot.launch')
@@ -281,9 +290,9 @@ def await_text(terminal: Terminal, pattern: str) -> None:
 
 
 def said(terminal: Terminal) -> str:
-    """The last lines that are not empty."""
+    """The last lines that are neither empty nor those of a spinner."""
     lines = [line.rstrip() for line in terminal.text.replace("\r", "\n").splitlines()]
-    return "\n".join([line for line in lines if line][-60:])
+    return "\n".join([line for line in lines if line and not "⠀" < line[0] < "⣿"][-60:])
 
 
 def check_output(shown: Sequence[str], output: str) -> None:
