@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
@@ -49,6 +50,38 @@ REFERENCE = click.option(
     " one last. What differs is shown first, and a parameter that kept its value is unlikely to be"
     " the cause.",
 )
+
+STATIC = click.option(
+    "--static",
+    "static_source",
+    type=PATH,
+    metavar="FILE_OR_FOLDER",
+    help="Static information: a static.json, a build base or a built workspace. [default: that of"
+    " the recording, else the one found in this folder or a sourced workspace]",
+)
+MARKS = click.option(
+    "--marks",
+    "marks_files",
+    type=PATH,
+    multiple=True,
+    metavar="FILE",
+    help="CSV file with more marks of the recording, as `mark -o` writes it; may be repeated.",
+)
+
+
+class Seconds(click.FloatRange):
+    """A number of seconds; unlike click's float range it rejects "nan"."""
+
+    name = "seconds"
+
+    def convert(
+        self, value: float, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
+        """Convert the text, or fail with a usage error."""
+        seconds = float(super().convert(value, param, ctx))
+        if math.isnan(seconds):
+            self.fail(f"{value!r} is not a number.", param, ctx)
+        return seconds
 
 
 def as_object(

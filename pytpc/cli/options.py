@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 import shlex
 from collections.abc import Sequence
@@ -17,7 +16,8 @@ from pytpc.api.learning import reports_digest
 from pytpc.api.missions import check_reports, read_named, same_reports
 from pytpc.base.errors import InputError
 from pytpc.base.wording import many, plain
-from pytpc.cli.arguments import PATH, Command
+from pytpc.cli import arguments
+from pytpc.cli.arguments import Command
 from pytpc.cli.console import progress, warn
 from pytpc.cli.lines import say
 from pytpc.diagnosis.question import WINDOW_S, Question, Types
@@ -39,29 +39,7 @@ class AskArguments:
     as_json: bool
 
 
-class Seconds(click.FloatRange):
-    """A number of seconds; unlike click's float range it rejects "nan"."""
-
-    name = "seconds"
-
-    def convert(
-        self, value: float, param: click.Parameter | None, ctx: click.Context | None
-    ) -> float:
-        """Convert the text, or fail with a usage error."""
-        seconds = float(super().convert(value, param, ctx))
-        if math.isnan(seconds):
-            self.fail(f"{value!r} is not a number.", param, ctx)
-        return seconds
-
-
-STATIC = click.option(
-    "--static",
-    "static_source",
-    type=PATH,
-    metavar="FILE_OR_FOLDER",
-    help="Static information: a static.json, a build base or a built workspace. [default: that of"
-    " the recording, else the one found in this folder or a sourced workspace]",
-)
+STATIC, MARKS, Seconds = arguments.STATIC, arguments.MARKS, arguments.Seconds
 TOP = click.option(
     "--top",
     type=click.IntRange(min=1),
@@ -78,15 +56,6 @@ WINDOW = click.option(
     show_default=True,
     metavar="SECONDS",
     help="Length of the window before a mark in which type II looks.",
-)
-
-MARKS = click.option(
-    "--marks",
-    "marks_files",
-    type=PATH,
-    multiple=True,
-    metavar="FILE",
-    help="CSV file with more marks of the recording, as `mark -o` writes it; may be repeated.",
 )
 
 _UNTYPED = "pytpc.untyped"

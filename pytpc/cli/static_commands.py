@@ -35,7 +35,6 @@ from pytpc.cli.console import (
     warn_of_failed,
 )
 from pytpc.cli.explain_commands import print_why_not
-from pytpc.cli.export_mission import VIEWERS, Viewers, export_mission, is_recording
 from pytpc.cli.selecting import SELECTING, place_of
 from pytpc.cli.sources import (
     SOURCES,
@@ -44,6 +43,7 @@ from pytpc.cli.sources import (
     tell_dropped,
     warn_of_changed,
 )
+from pytpc.cli.viewer_options import VIEWERS, Viewers
 from pytpc.conditions.cpp_conditions import lines_of
 from pytpc.conditions.lookup import look_up_conditions
 from pytpc.conditions.sarif import sarif_log
@@ -166,6 +166,9 @@ def export_command(
             f"--sarif and --html are for static information, {next(iter(outputs))} is for a"
             " recording: give them one after the other"
         )
+    # It reads and judges missions, which takes longer to import than this module.
+    from pytpc.cli.export_mission import export_mission, is_recording  # noqa: PLC0415
+
     _refuse_given(_OF_STATIC if outputs else _OF_RECORDINGS, is_of_static=is_of_static)
     if outputs:
         export_mission(given.sources, given.viewers)
