@@ -72,6 +72,7 @@ FOLDERS: Mapping[str, Sequence[str]] = {
     "origin": (INPUT,),
     "patch": (INPUT,),
     "processes": (INPUT,),
+    "lint": (INPUT,),
     "record": (INPUT, "robot.launch", "-o", "out"),
     "run": (INPUT,),
     "study": ("suggested", INPUT),
