@@ -112,9 +112,7 @@ def stream_command(given: _StreamArguments) -> None:
             " and leave RECORDING out, or give --rerun"
         )
     with ExitStack() as stack, signals_end():
-        # Before anything is read: what is missing is told at once.
-        shown = None if given.viewer is None else _connected(given.viewer)
-        stream = _opened(given, shown, stack)
+        stream = _opened(given, stack)
         until_s = None if given.seconds is None else time.monotonic() + given.seconds
         while not stream.is_over() and (until_s is None or time.monotonic() < until_s):
             time.sleep(_TURN_S)
@@ -131,15 +129,16 @@ class _Opened:
         self.is_over = is_over
 
 
-def _opened(given: _StreamArguments, shown: tuple[str, int] | None, stack: ExitStack) -> _Opened:
+def _opened(given: _StreamArguments, stack: ExitStack) -> _Opened:
     question = Question(given.types, given.window_s)
     if given.recording is not None:
-        return _recorded(given, question, shown, stack)
+        return _recorded(given, question, stack)
     graph = use_graph(given.running_folder)
     source = given.static_source or graph.static
     static = _with_comparisons(static_for(source), source)
     good = good_runs(given.references, static)
     file = known_static_file(source)
+    shown = _connected(given.viewer)
     side = StreamSide(graph.master, publishes=given.diagnostics)
     stack.callback(side.close)
     feed = GraphFeed(graph.master, fresh_watching(static, question))
@@ -154,17 +153,13 @@ def _opened(given: _StreamArguments, shown: tuple[str, int] | None, stack: ExitS
     return _Opened(stream, lambda: False)
 
 
-def _recorded(
-    given: _StreamArguments,
-    question: Question,
-    shown: tuple[str, int] | None,
-    stack: ExitStack,
-) -> _Opened:
+def _recorded(given: _StreamArguments, question: Question, stack: ExitStack) -> _Opened:
     assert given.recording is not None
     recording = recording_of(given.recording)
     static = static_for(given.static_source, given.recording, recording)
     check(recording, _with_comparisons(static, given.static_source), given.recording)
     good = good_runs(given.references, static)
+    shown = _connected(given.viewer)
     run = RecordedRun(recording, given.recording)
 
     def ask(mission: Recording) -> AskedMission:
@@ -207,14 +202,16 @@ def _with_comparisons(static: StaticInfo, source: Path | None) -> StaticInfo:
     return static
 
 
-def _connected(address: str) -> tuple[str, int]:
-    """Host and port of a viewer that answers.
+def _connected(address: str | None) -> tuple[str, int] | None:
+    """Host and port of a viewer that answers; None if there is no address.
 
     Raises:
         UsageError: it is no address.
         RunError: nobody answers there.
         MissingToolError: Rerun is not installed.
     """
+    if address is None:
+        return None
     rerun_sdk()
     try:
         found = urlsplit(f"//{address.removeprefix('rerun+http://').removesuffix('/proxy')}")
