@@ -10,6 +10,7 @@ import pytest
 from mission_samples import comparison, events, key, ns, static_info
 from rich.console import Console
 
+import pytpc.diagnosis.turn_groups as turn_groups_module
 from pytpc.diagnosis.diagnose import diagnose_mission
 from pytpc.diagnosis.ranking.live_groups import LiveGroups
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
@@ -115,6 +116,40 @@ def test_who_turns_very_often_takes_bounded_time():
     often = np.cumsum(np.tile([0.9, 1.7, 2.4], MOST))
     (group,) = turn_groups([turns("a", *often), turns("b", *(often + 0.02))], float(often[-1]))
     assert group.turns == MOST
+
+
+def test_few_pairs_are_looked_at_closely(monkeypatch):
+    # 300 comparisons that turn 20 times, at random: 44,850 pairs.
+    rng = np.random.default_rng(1)
+    every = [turns(f"x{n}", *np.sort(rng.uniform(0, 3600, 20))) for n in range(300)]
+    looked_at = []
+    belong = turn_groups_module._belong
+    monkeypatch.setattr(
+        turn_groups_module, "_belong", lambda *given: looked_at.append(given) or belong(*given)
+    )
+    assert turn_groups(every, 3600.0) == ()
+    assert len(looked_at) < 100
+
+
+@pytest.mark.parametrize("begin", [0.0, 1.7e9])
+def test_a_first_look_misses_no_group(monkeypatch, begin):
+    # Pairs at all distances, with as many misses as are forgiven, at the begin of the mission.
+    rng = np.random.default_rng(2)
+    every = []
+    for n, count in enumerate((2, 3, 9, 10, 20, 60, 150)):
+        for distance in (0.0, 0.1, 0.5, 1.4):
+            times = begin + np.cumsum(rng.uniform(6, 10, count))
+            later = times + distance + rng.uniform(-0.1, 0.1, count)
+            later[: count // 10] += 3
+            every += [turns(f"a{n} {distance}", *times), turns(f"b{n} {distance}", *later)]
+    found = turn_groups(every, 1500.0)
+    assert {"a6 0.0", "b6 0.0"} in [{*one.parameters} for one in found]
+    monkeypatch.setattr(
+        turn_groups_module,
+        "_likely",
+        lambda turned, ends: ((a, b) for a in range(len(turned)) for b in range(a + 1, ends[a])),
+    )
+    assert turn_groups(every, 1500.0) == found
 
 
 def test_the_groups_of_a_recording():
