@@ -16,8 +16,8 @@ the tail. The groups are the connected components.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import exp, lgamma, log
 
@@ -150,7 +150,7 @@ def _belong(first: Turns, second: Turns, seconds: float, limit: float) -> bool:
     most = max(a.size, b.size)
     if abs(median) > ORDER_S or joined < AGREED * most:
         return False
-    width = _width(median)
+    width = width_of(median)
     free = 1.0 if abs(median) <= TOGETHER_S else ORDER_S / width
     # Two that turn nearly all the time always meet.
     hit = min(1.0, 2.0 * width * second.times.size / max(seconds, width))
@@ -165,7 +165,7 @@ def _joined(a: Floats, b: Floats) -> tuple[float, int]:
     nearest = _nearest(a, b)
     median = float(np.median(b[nearest] - a))
     met = _nearest(a + median, b)
-    near = np.abs(b[met] - a - median) <= _width(median)
+    near = np.abs(b[met] - a - median) <= width_of(median)
     return median, int(np.unique(met[near]).size)
 
 
@@ -176,7 +176,8 @@ def _nearest(times: Floats, among: Floats) -> np.ndarray[tuple[int], np.dtype[np
     return np.where(times - among[before] <= among[after] - times, before, after)
 
 
-def _width(median: float) -> float:
+def width_of(median: float) -> float:
+    """How far a distance may be from its median, in s."""
     return max(TOGETHER_S, SPREAD * abs(median))
 
 
@@ -204,10 +205,20 @@ def _group(members: Sequence[Turns]) -> TurnGroup:
         ((_joined(seen_from, one.times[:MOST]), one) for one in members),
         key=lambda each: (each[0][0], each[1].parameter, each[1].key, each[1].node),
     )
-    begin = ordered[0][0][0]
-    made = tuple(
-        GroupMember(one.key, one.node, one.parameter, after - begin, one.times.size, joined)
+    return _in_order(
+        GroupMember(one.key, one.node, one.parameter, after, one.times.size, joined)
         for (after, joined), one in ordered
     )
+
+
+def part_of(group: TurnGroup, members: Collection[tuple[str, str]]) -> TurnGroup:
+    """The same with these (key, node) only, at least two of its members."""
+    return _in_order(one for one in group.members if (one.key, one.node) in members)
+
+
+def _in_order(members: Iterable[GroupMember]) -> TurnGroup:
+    """The group of sorted members, of which the first one turns at 0."""
+    every = list(members)
+    made = tuple(replace(one, after_s=one.after_s - every[0].after_s) for one in every)
     gaps = [later.after_s - earlier.after_s for earlier, later in pairwise(made)]
     return TurnGroup("in order" if max(gaps) > TOGETHER_S else "together", made)

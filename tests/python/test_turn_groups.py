@@ -12,11 +12,13 @@ from rich.console import Console
 
 import pytpc.diagnosis.turn_groups as turn_groups_module
 from pytpc.diagnosis.diagnose import diagnose_mission
+from pytpc.diagnosis.ranking.grouped import suspect_groups
 from pytpc.diagnosis.ranking.live_groups import LiveGroups
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
+from pytpc.diagnosis.results.advice import WhatIf
 from pytpc.diagnosis.results.turn_groups import SuspectGroup, group_of
 from pytpc.diagnosis.scores.score_tables import Tpcs
-from pytpc.diagnosis.turn_groups import MOST, Turns, groups_in, turn_groups
+from pytpc.diagnosis.turn_groups import MOST, Turns, groups_in, part_of, turn_groups
 from pytpc.present.answers import Diagnosed
 from pytpc.present.as_json import diagnosis_json
 from pytpc.present.ranking_tables import print_diagnosis
@@ -177,7 +179,7 @@ def test_the_sentence_about_suspects():
     assert group_of([group], "c") is None
 
 
-def told():
+def told_mission():
     """A mission in which ~a and ~b turn at the same times, 3 s before each mark; ~c is noise."""
     rows = []
     for tick in range(1600):
@@ -187,7 +189,11 @@ def told():
         rows.append((t + 0.02, 2, 0, 0.1 * (tick % 3), 9))
     marks = tuple(Mark(ns(t), "I", "one") for t in (23, 63))
     static = static_info(comparison(0, "~a"), comparison(1, "~b"), comparison(2, "~c"))
-    return diagnose_mission(Recording("m", events(rows), marks, 0, ns(80)), static)
+    return Recording("m", events(rows), marks, 0, ns(80)), static
+
+
+def told():
+    return diagnose_mission(*told_mission())
 
 
 def test_suspects_that_turn_together_are_one():
@@ -215,6 +221,83 @@ def test_a_group_is_blamed_that_is_sure_together():
     )
     unsure = replace(sure, groups=(replace(group, probability=0.79),))
     assert unsure.text.startswith("not sure: ")
+
+
+def switched(*turns_of, marks, seconds=800):
+    """The groups of a mission whose comparisons turn at these times."""
+    rows = [
+        (tick / 4 + n / 100, n, on, 1 + on, 1.5)
+        for tick in range(4 * seconds)
+        for n, times in enumerate(turns_of)
+        for on in [sum(t <= tick / 4 for t in times) % 2]
+    ]
+    static = static_info(
+        *(comparison(n, f"~{name}") for n, name in enumerate("abc"[: len(turns_of)]))
+    )
+    recording = Recording("m", events(rows), tuple(Mark(ns(t), "I", "one") for t in marks), 0, 0)
+    return [one.parameters for one in diagnose_mission(recording, static).blame.groups]
+
+
+def test_who_did_not_turn_before_the_mark_is_told_apart():
+    # ~a and ~b turn together ten times. Before the mark at 604 s, only ~a does.
+    often = [50 * n for n in range(1, 11)]
+    assert switched([*often, 600], often, marks=[604]) == []
+    assert [{*one} for one in switched([*often, 600], [*often, 600], marks=[604])] == [{"~a", "~b"}]
+
+
+def test_turns_long_before_the_marks_make_no_group_of_suspects():
+    assert switched([2, 5, 9], [2, 5, 9], marks=[600, 700]) == []
+    assert len(switched([2, 5, 9], [2, 5, 9], marks=[20, 30])) == 1
+
+
+def test_who_is_unlikely_is_not_named():
+    found = told().blame
+    a, b, *_ = found.suspects
+    recording, static = told_mission()
+    tpcs = Tpcs.of(static)
+    streams = ResultStreams.of(recording.events, tpcs)
+    likely = replace(a, probability=0.81), replace(b, probability=0.009)
+    given = groups_in(streams, tpcs), streams, tpcs, recording.marks
+    assert suspect_groups(likely, *given) == ()
+    likely = replace(a, probability=0.7), replace(b, probability=0.1)
+    assert suspect_groups(likely, *given)[0].probability == pytest.approx(0.8)
+
+
+def test_a_blamed_group_is_tried_although_each_member_is_less_likely_than_none():
+    found = told()
+    group = replace(found.blame.groups[0], probability=0.82)
+    suspects = tuple(replace(one, probability=0.1) for one in found.blame.suspects)
+    blame = replace(found.blame, suspects=suspects, none=0.18, groups=(group,))
+    assert blame.text.startswith("blame one of ")
+    assert not replace(found, blame=blame).is_none_likeliest
+    assert replace(found, blame=replace(blame, groups=())).is_none_likeliest
+
+
+def test_a_group_of_which_all_would_only_be_stopped_is_not_blamed():
+    found = told()
+    blame = replace(found.blame, groups=(replace(found.blame.groups[0], probability=0.85),))
+    low = tuple(replace(one, probability=0.4) for one in blame.suspects)
+    ends = WhatIf("~a", 2, 2, 2, 9, 2, 7, "", (), stops=True)
+    advice = tuple(replace(one, what_if=ends) for one in found.advice)
+    asked = replace(found, blame=replace(blame, suspects=low), advice=advice)
+    a, b = blame.groups[0].parameters
+    assert asked.headline == (
+        f"not sure: {a}, {b} are likeliest (85 % together), but the log only shows that another"
+        " value would stop all that they decide"
+    )
+    some = (advice[0], *(replace(one, what_if=None) for one in advice[1:]))
+    assert replace(asked, advice=some).headline.startswith("blame one of ")
+
+
+def test_the_part_of_a_group_begins_with_its_own_first_member():
+    a = np.arange(10.0, 110.0, 20.0)
+    (whole,) = turn_groups(
+        [turns("a", *a), turns("b", *(a + 1.2)), turns("c", *(a + 1.25))], SECONDS
+    )
+    assert whole.kind == "in order"
+    part = part_of(whole, {(f"key of {name}", "/node") for name in "bc"})
+    assert part.kind == "together"
+    assert [one.after_s for one in part.members] == pytest.approx([0, 0.05])
 
 
 def test_the_answers_show_the_group():
