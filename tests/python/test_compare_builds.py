@@ -376,3 +376,9 @@ def test_function_names() -> None:
     assert function_name("a::f(int, std::function<void (int)>) const") == "a::f"
     assert function_name("a::operator()(int)") == "a::operator()"
     assert function_name("node.Node.run") == "node.Node.run"
+
+
+def test_a_line_of_generated_code_takes_bounded_time() -> None:
+    # Each place of the line once was looked at from each other one, for half an hour.
+    assert is_negated(f"{'a' * 200_000} && !b->use_", "use_")
+    assert sides("x < y && " * 20_000 + "a < limit_", "limit_", "<") == ("a", "limit_", "<")
