@@ -21,6 +21,7 @@ from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.diagnosis.turn_groups import MOST, Turns, groups_in, part_of, turn_groups
 from pytpc.present.answers import Diagnosed
 from pytpc.present.as_json import diagnosis_json
+from pytpc.present.margin_tables import group_text
 from pytpc.present.ranking_tables import print_diagnosis
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
@@ -112,6 +113,19 @@ def test_nodes_of_one_comparison_are_told_apart():
     found = turn_groups([turns("a", 10, 50, node="/x"), turns("a", 10, 50, node="/y")], SECONDS)
     assert [(one.node, one.parameter) for one in found[0].members] == [("/x", "a"), ("/y", "a")]
     assert found[0].parameters == ("a",)
+
+
+def test_a_parameter_is_named_once_for_each_node():
+    a = (10, 50, 90)
+    nodes = [turns("a", *a, node="/x"), turns("a", *a, node="/y")]
+    (group,) = turn_groups(nodes, SECONDS)
+    assert group_text(group) == "One group: a in /x, a in /y turned together, 3 times"
+    lines = [replace(turns("a", *a), key=name) for name in ("one", "two")]
+    (group,) = turn_groups([*lines, turns("b", *(t + 0.5 for t in a))], SECONDS)
+    assert group_text(group) == (
+        "One group: a (2 comparisons), b (0.5 s later) turned one after the other within 0.5 s,"
+        " 3 times"
+    )
 
 
 def test_who_turns_very_often_takes_bounded_time():
