@@ -24,7 +24,7 @@ from math import exp, lgamma, log
 import numpy as np
 
 from pytpc.base.columns import Floats, Int64s
-from pytpc.diagnosis.ranking.result_streams import CASCADE_S, ResultStreams
+from pytpc.diagnosis.ranking.result_streams import CASCADE_S, ResultStream, ResultStreams
 from pytpc.diagnosis.ranking.summarised import with_summarised
 from pytpc.diagnosis.results.turn_groups import GroupMember, TurnGroup
 from pytpc.diagnosis.scores.score_tables import Tpcs
@@ -71,16 +71,39 @@ class Turns:
 def groups_of(recording: Recording, static_info: StaticInfo) -> tuple[TurnGroup, ...]:
     """The groups of a recording, with the names of its static information."""
     tpcs = Tpcs.of(static_info)
-    return groups_in(ResultStreams.of(with_summarised(recording), tpcs), tpcs)
+    streams = ResultStreams.of(with_summarised(recording), tpcs)
+    return groups_in(streams, tpcs, recording)
 
 
-def groups_in(streams: ResultStreams, tpcs: Tpcs) -> tuple[TurnGroup, ...]:
-    """The groups of streams; noise at a threshold counts as one turn."""
+def groups_in(streams: ResultStreams, tpcs: Tpcs, recording: Recording) -> tuple[TurnGroup, ...]:
+    """The groups of a recording's streams; noise at a threshold counts as one turn."""
     turns = [
-        Turns(tpcs.keys[one.code], one.node, tpcs.parameters[one.code], one.changes)
+        Turns(
+            tpcs.keys[one.code],
+            one.node,
+            tpcs.parameters[one.code],
+            _reported(one, tpcs.keys[one.code], streams.begin_ns, recording),
+        )
         for one in streams.streams
     ]
     return turn_groups(turns, streams.seconds)
+
+
+def _reported(stream: ResultStream, key: str, begin_ns: int, recording: Recording) -> Floats:
+    """The turns whose times were reported.
+
+    Of others a summary tells, at its end. There a node ends all its summaries: what turned in one
+    period would seem to have turned at one instant.
+    """
+    events = recording.events
+    if not len(recording.summaries):
+        return stream.changes
+    if stream.node not in events.nodes:
+        return stream.changes[:0]
+    rows = events.rows_of(key)
+    rows = rows[events.node[rows] == events.nodes.index(stream.node)]
+    times = (events.time_ns[rows] - begin_ns) / 1e9
+    return stream.changes[np.isin(stream.changes, times)]
 
 
 def turn_groups(every: Sequence[Turns], seconds: float) -> tuple[TurnGroup, ...]:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import io
+import itertools
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from mission_samples import comparison, events, key, ns, static_info
+from mission_samples import SummaryBuilder, comparison, events, key, ns, static_info
 from rich.console import Console
 
 import pytpc.diagnosis.turn_groups as turn_groups_module
@@ -15,16 +16,18 @@ from pytpc.diagnosis.diagnose import diagnose_mission
 from pytpc.diagnosis.ranking.grouped import suspect_groups
 from pytpc.diagnosis.ranking.live_groups import LiveGroups
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
+from pytpc.diagnosis.ranking.summarised import with_summarised
 from pytpc.diagnosis.results.advice import WhatIf
 from pytpc.diagnosis.results.turn_groups import SuspectGroup, group_of
 from pytpc.diagnosis.scores.score_tables import Tpcs
-from pytpc.diagnosis.turn_groups import MOST, Turns, groups_in, part_of, turn_groups
+from pytpc.diagnosis.turn_groups import MOST, Turns, groups_in, groups_of, part_of, turn_groups
 from pytpc.present.answers import Diagnosed
 from pytpc.present.as_json import diagnosis_json
 from pytpc.present.margin_tables import group_text
 from pytpc.present.ranking_tables import print_diagnosis
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
+from pytpc.recording.summaries import Summary
 
 SECONDS = 300.0
 
@@ -178,11 +181,35 @@ def test_the_groups_of_a_recording():
         rows.append((t + 0.05, 2, int(t) // 9 % 2, int(t) // 9 % 2, 0.5))
     static = static_info(comparison(0, "~a"), comparison(1, "~b"), comparison(2, "~c"))
     tpcs = Tpcs.of(static)
-    (group,) = groups_in(ResultStreams.of(events(rows), tpcs), tpcs)
+    (group,) = groups_in(
+        ResultStreams.of(events(rows), tpcs), tpcs, Recording("m", events(rows), (), 0, 0)
+    )
     assert [(one.key, one.parameter, one.turns) for one in group.members] == [
         (key(0), "~a", 3),
         (key(1), "~b", 3),
     ]
+
+
+def test_turns_that_only_summaries_tell_have_no_time():
+    # Of both, each period of 10 s is one summary. In 60 to 70 s and in 130 to 140 s both turned.
+    told = SummaryBuilder()
+    for number, period in itertools.product((0, 1), range(30)):
+        on, turned = 6 <= period < 13, period in (6, 13)
+        end = 10 * period + 10
+        row = Summary(
+            key(number), "/node", ns(end - 10), ns(end), 100, int(turned), 0, 0, on, on,
+            2.0 * on, 1.0, -1.0, 1.0, 0.0, 1.0, 0.0, 2.0,
+        )  # fmt: skip
+        told.add(row)
+    static = static_info(comparison(0, "~a"), comparison(1, "~b"))
+    silent = Recording("m", events([]), (), 0, ns(300), summaries=told.build())
+    streams = ResultStreams.of(with_summarised(silent), Tpcs.of(static))
+    assert [one.changes.size for one in streams.streams] == [2, 2]
+    assert groups_of(silent, static) == ()
+    # The same with the reports of the turns.
+    rows = [(t + 0.1 * n, n, on, 2 * on, 1) for t, on in ((66, 1), (135, 0)) for n in (0, 1)]
+    reported = replace(silent, events=events(rows))
+    assert [one.parameters for one in groups_of(reported, static)] == [("~a", "~b")]
 
 
 def test_the_sentence_about_suspects():
@@ -271,7 +298,7 @@ def test_who_is_unlikely_is_not_named():
     tpcs = Tpcs.of(static)
     streams = ResultStreams.of(recording.events, tpcs)
     likely = replace(a, probability=0.81), replace(b, probability=0.009)
-    given = groups_in(streams, tpcs), streams, tpcs, recording.marks
+    given = groups_in(streams, tpcs, recording), streams, tpcs, recording.marks
     assert suspect_groups(likely, *given) == ()
     likely = replace(a, probability=0.7), replace(b, probability=0.1)
     assert suspect_groups(likely, *given)[0].probability == pytest.approx(0.8)
