@@ -198,6 +198,12 @@ def test_what_was_edited(what: dict[str, Any], edits: str) -> None:
     assert said(of(comparison()), of(comparison(**what))) == [("changed", edits)]
 
 
+def test_a_default_of_another_type_is_told_apart() -> None:
+    assert said(of(comparison(default=1)), of(comparison(default=1.0))) == [
+        ("changed", "default: 1 -> 1.0")
+    ]
+
+
 def test_an_edited_line_that_moved_is_still_that_line() -> None:
     new = comparison(lineno=90, relation=">=", source_code="if (coverage >= min_coverage_limit_)")
     assert said(of(comparison()), of(new)) == [("changed", "operator: > -> >=")]
