@@ -13,6 +13,7 @@ equal parts of the time.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -66,13 +67,16 @@ def by_nearest(one: Behaviour) -> tuple[float, str]:
 def over_missions(missions: Sequence[Sequence[Behaviour]]) -> tuple[OverMissions, ...]:
     """The comparisons of several missions, in their order.
 
-    A comparison of a node is the same in all of them if its key is, and the node or the parameter's
-    name.
+    A comparison is the same in all of them if its key, its node and the parameter's name are. The
+    number of an instance does not count: only of several with one name, the first is the first.
     """
-    places: dict[tuple[str, str, str], list[Behaviour | None]] = {}
+    places: dict[tuple[str, str, str, int], list[Behaviour | None]] = {}
     for number, mission in enumerate(missions):
+        alike: Counter[tuple[str, str, str]] = Counter()
         for one in mission:
-            row = places.setdefault((base_key(one.key), one.node, one.parameter), [])
+            same = base_key(one.key), one.node, one.parameter
+            row = places.setdefault((*same, alike[same]), [])
+            alike[same] += 1
             row += [None] * (number + 1 - len(row))
             row[number] = one
     count = len(missions)

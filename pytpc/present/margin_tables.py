@@ -12,7 +12,7 @@ from rich.text import Text
 
 from pytpc.base.wording import many, percent, plain
 from pytpc.diagnosis.results.behaviour import Behaviour, OverMissions
-from pytpc.diagnosis.results.turn_groups import TurnGroup
+from pytpc.diagnosis.results.turn_groups import GroupMember, TurnGroup
 from pytpc.present.as_json import Json, finite
 from pytpc.present.listing import Heading, Listing
 
@@ -82,11 +82,20 @@ def print_over_missions(
 
 def group_text(group: TurnGroup) -> str:
     """The members of a group, each with how long after the first it turned."""
-    names = [
-        one.parameter + (f" ({one.after_s:.1f} s later)" if group.kind == "in order" and n else "")
-        for n, one in enumerate(group.members)
-    ]
-    return f"One group: {', '.join(names)} {group.text}"
+    nodes: dict[str, set[str]] = {}
+    for one in group.members:
+        nodes.setdefault(one.parameter, set()).add(one.node)
+    named: dict[str, list[GroupMember]] = {}
+    for one in group.members:
+        node = f" in {one.node}" if len(nodes[one.parameter]) > 1 else ""
+        named.setdefault(f"{one.parameter}{node}", []).append(one)
+    told: list[str] = []
+    for name, same in named.items():
+        said = [many(len(same), "comparison")] if len(same) > 1 else []
+        if group.kind == "in order" and told:
+            said.append(f"{same[0].after_s:.1f} s later")
+        told.append(f"{name} ({', '.join(said)})" if said else name)
+    return f"One group: {', '.join(told)} {group.text}"
 
 
 def _indented(part: RenderableType) -> RenderableType:

@@ -35,12 +35,16 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """A rule, whether it was asked for, how many findings it allows, and what it found."""
+    """A rule, whether it was asked for, how many findings it allows, and what it found.
+
+    ``is_budget``: it was asked for as a number of new comparisons.
+    """
 
     rule: Rule
     is_asked: bool
     most: int
     findings: tuple[Finding, ...]
+    is_budget: bool = False
 
     @property
     def is_broken(self) -> bool:
@@ -50,7 +54,7 @@ class Verdict:
     @property
     def line(self) -> str:
         """What is wrong, in one line."""
-        option = f"--fail-on {self.rule}" if not self.most else f"--budget {self.most}"
+        option = f"--budget {self.most}" if self.is_budget else f"--fail-on {self.rule}"
         places = listed([f"{one.name} at {one.place}" for one in self.findings], _NAMED)
         return f"{option}: {RULES[self.rule]} ({len(self.findings):,}): {places}"
 
@@ -78,15 +82,13 @@ def verdicts(
             *(Finding(*_unit_of(text), text) for text in changes.unanalysed),
         ],
     }
-    return [
-        Verdict(
-            rule,
-            rule in rules or (rule == "new" and most_new is not None),
-            most_new or 0 if rule == "new" and "new" not in rules else 0,
-            tuple(findings),
-        )
-        for rule, findings in found.items()
-    ]
+    judged = []
+    for rule, findings in found.items():
+        # A rule is stricter than a budget.
+        is_budget = rule == "new" and most_new is not None and rule not in rules
+        most = most_new or 0 if is_budget else 0
+        judged.append(Verdict(rule, rule in rules or is_budget, most, tuple(findings), is_budget))
+    return judged
 
 
 def place_of(one: ComparisonChange) -> str:

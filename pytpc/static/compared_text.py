@@ -8,6 +8,7 @@ where that is not clear gives nothing.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from typing import NamedTuple
 
 MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
@@ -29,6 +30,8 @@ _TEMPLATE = re.compile(
 )
 _SPACE = re.compile(r"\s+")
 _WORD = re.compile(r"\w")
+_PATH_BACKWARDS = re.compile(r"(?:[\w.\[\]]|>-|::)*")
+_NOT_BACKWARDS = re.compile(r"\s*!|\s+ton\b")
 
 
 class Sides(NamedTuple):
@@ -113,9 +116,13 @@ def is_negated(line: str | None, name: str | None) -> bool | None:
     """
     if not line or not name:
         return None
-    last = re.escape(_last(name))
-    found = re.findall(rf"(!(?!=)\s*|\bnot\s+)?(?:[\w.\[\]]|->|::)*\b{last}\b(?!\s*\()", line)
-    return bool(found[0]) if len(found) == 1 else None
+    found = list(re.finditer(rf"\b{re.escape(_last(name))}\b(?!\s*\()", line))
+    if len(found) != 1:
+        return None
+    # Backwards from the name over what it is a member of.
+    before = line[: found[0].start()][::-1]
+    path = _PATH_BACKWARDS.match(before)
+    return _NOT_BACKWARDS.match(before, path.end() if path else 0) is not None
 
 
 def _comparisons(line: str) -> list[tuple[str, str, str]]:
@@ -124,8 +131,8 @@ def _comparisons(line: str) -> list[tuple[str, str, str]]:
     found = []
     for number, (kind, start, end) in enumerate(tokens):
         if kind == "relation":
-            left = _reach(tokens[:number][::-1], "close", "open")
-            right = _reach(tokens[number + 1 :], "open", "close")
+            left = _reach(map(tokens.__getitem__, range(number - 1, -1, -1)), "close", "open")
+            right = _reach(map(tokens.__getitem__, range(number + 1, len(tokens))), "open", "close")
             begin = left[-1][1] if left else start
             stop = right[-1][2] if right else end
             sides_ = _bare(line[begin:start]), line[start:end], _bare(line[end:stop])
@@ -139,7 +146,7 @@ def _tokens(line: str) -> list[tuple[str, int, int]]:
 
 
 def _reach(
-    tokens: list[tuple[str, int, int]], deeper: str, higher: str
+    tokens: Iterable[tuple[str, int, int]], deeper: str, higher: str
 ) -> list[tuple[str, int, int]]:
     """The tokens up to the end of the operand: a bracket that it does not open, or an operator."""
     depth, reached = 0, []

@@ -9,7 +9,7 @@ from typing import Literal
 from pytpc.base.wording import listed
 from pytpc.static.compared_text import MIRRORED, is_negated, only_comparison, sides
 from pytpc.static.matching import Site
-from pytpc.static.parameter_changes import shown_defaults
+from pytpc.static.parameter_changes import other_defaults
 
 What = Literal[
     "parameter", "operator", "side", "compared value", "condition", "type", "arithmetic",
@@ -40,8 +40,9 @@ def edits_of(old: Site, new: Site) -> Iterator[Edit]:
     if old.transforms != new.transforms:
         told = [listed(one.transforms, _NAMED) or "as it is" for one in (old, new)]
         yield Edit("arithmetic", *told)
-    if list(map(repr, old.defaults)) != list(map(repr, new.defaults)):
-        yield Edit("default", shown_defaults(old.defaults), shown_defaults(new.defaults))
+    defaults = other_defaults(old.defaults, new.defaults)
+    if defaults is not None:
+        yield Edit("default", *defaults)
 
 
 def topic_edit(old: Site, new: Site) -> tuple[Edit, ...]:

@@ -221,9 +221,8 @@ def _kept(name: tuple[str, str], old: _Read, new: _Read) -> Iterator[ParameterCh
             new.places,
         )
     shared = old.units & new.units
-    both = old.defaults(shared), new.defaults(shared)
-    if list(map(repr, both[0])) != list(map(repr, both[1])):
-        told = shown_defaults(both[0]), shown_defaults(both[1])
+    told = other_defaults(old.defaults(shared), new.defaults(shared))
+    if told is not None:
         yield ParameterChange("default", package, parameter, *told, places=new.places)
 
 
@@ -279,6 +278,16 @@ def _declared(old: Iterable[DeclaredAs], new: Iterable[DeclaredAs]) -> Iterator[
             place = other or one
             places = () if place is None else (place.place,)
             yield ParameterChange("declared", name[0], name[2], was, now, places=places)
+
+
+def other_defaults(old: Sequence[Default], new: Sequence[Default]) -> tuple[str, str] | None:
+    """What the defaults were and are; None if they are the same. 1 is not 1.0, nor true."""
+    if list(map(repr, old)) == list(map(repr, new)):
+        return None
+    was, now = shown_defaults(old), shown_defaults(new)
+    if was == now:
+        was, now = (", ".join(map(str, defaults)) for defaults in (old, new))
+    return was, now
 
 
 def shown_defaults(defaults: Sequence[Default]) -> str:

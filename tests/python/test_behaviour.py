@@ -178,6 +178,16 @@ def test_over_missions():
     assert other.trend is None
 
 
+def test_two_instances_with_one_name_are_told_apart_over_missions():
+    static = static_info(comparison(0, "~limit"))
+    one = behaviours(mission(events([(0, 0, 1, 3, 0), (1, 0, 1, 9, 0)])), static)
+    other = tuple(replace(each, key=f"{each.key}#2") for each in one)
+    found = over_missions([(*one, *other), one])
+    assert [each.behaviours for each in found] == [(*one, *one), (*other, None)]
+    # The number of an instance with a name of its own may be another one in the next mission.
+    assert [each.behaviours for each in over_missions([one, other])] == [(*one, *other)]
+
+
 def test_a_few_missions_have_no_trend():
     static = static_info(comparison(0, "~limit"))
     found = [

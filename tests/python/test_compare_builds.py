@@ -198,6 +198,12 @@ def test_what_was_edited(what: dict[str, Any], edits: str) -> None:
     assert said(of(comparison()), of(comparison(**what))) == [("changed", edits)]
 
 
+def test_a_default_of_another_type_is_told_apart() -> None:
+    assert said(of(comparison(default=1)), of(comparison(default=1.0))) == [
+        ("changed", "default: 1 -> 1.0")
+    ]
+
+
 def test_an_edited_line_that_moved_is_still_that_line() -> None:
     new = comparison(lineno=90, relation=">=", source_code="if (coverage >= min_coverage_limit_)")
     assert said(of(comparison()), of(new)) == [("changed", "operator: > -> >=")]
@@ -376,3 +382,9 @@ def test_function_names() -> None:
     assert function_name("a::f(int, std::function<void (int)>) const") == "a::f"
     assert function_name("a::operator()(int)") == "a::operator()"
     assert function_name("node.Node.run") == "node.Node.run"
+
+
+def test_a_line_of_generated_code_takes_bounded_time() -> None:
+    # Each place of the line once was looked at from each other one, for half an hour.
+    assert is_negated(f"{'a' * 200_000} && !b->use_", "use_")
+    assert sides("x < y && " * 20_000 + "a < limit_", "limit_", "<") == ("a", "limit_", "<")

@@ -154,7 +154,7 @@ def _other_units(write: Write) -> tuple[str, str]:
         (("--fail-on", "lost"), []),
         (("--fail-on", "missing-unit"), []),
         (("--budget", "1"), []),
-        (("--budget", "0"), ["--fail-on new"]),
+        (("--budget", "0"), ["--budget 0"]),
         # Whoever forbids new ones has no budget for them.
         (("--budget", "5", "--fail-on", "new"), ["--fail-on new"]),
     ],

@@ -80,7 +80,8 @@ def blame(recording: Recording, static_info: StaticInfo, question: Question = PL
     no_word = {found.names[column] for column in unheard(recording, streams)}
     suspects = _in_order(by_size((*compared, *silent), differences, no_word))
     code = None if differences is None else differences.code
-    groups = suspect_groups(suspects, groups_in(streams, tpcs))
+    turning = groups_in(streams, tpcs, recording)
+    groups = suspect_groups(suspects, turning, streams, tpcs, recording.marks)
     none = left * found.none
     made = Blame(suspects, none, len(tpcs.names), recording.marks, notes, code, groups)
     if len(recording.marks) > 1 or made.accused is not None:

@@ -12,7 +12,7 @@ from pytpc.base.wording import listed, many, percent
 from pytpc.diagnosis.results.advice import BlamedAdvice
 from pytpc.diagnosis.results.differences import Difference, RunDifferences
 from pytpc.diagnosis.results.suspects import WORTH, Blame, Suspected
-from pytpc.diagnosis.results.turn_groups import SuspectGroup, group_of
+from pytpc.diagnosis.results.turn_groups import NAMED, SuspectGroup, group_of
 
 _NAMED = 3
 
@@ -43,8 +43,12 @@ class Diagnosis:
     def _only_stops(self) -> bool:
         if not self.advice or self.blame.accused is None:
             return False
-        first = self.advice[0]
-        return first.stops and first.remedy.basis not in {"reference", "before"}
+        return _only_stops(self.advice[0])
+
+    def _all_only_stop(self, group: SuspectGroup) -> bool:
+        """The same of all members of a group that have an advice."""
+        members = [one for one in self.advice if one.accused.parameter in group.parameters]
+        return bool(members) and all(map(_only_stops, members))
 
     @property
     def confidence(self) -> float:
@@ -53,8 +57,9 @@ class Diagnosis:
 
     @property
     def is_none_likeliest(self) -> bool:
-        """Whether "none of the parameters" is likelier than each of them."""
-        return self.blame.none > self.blame.confidence
+        """Whether "none of the parameters" is likelier than each, and no group is blamed."""
+        found = self.blame
+        return found.none > found.confidence and found.blamed_group is None
 
     @cached_property
     def shown(self) -> tuple[BlamedAdvice, ...]:
@@ -119,6 +124,13 @@ class Diagnosis:
                 f"not sure: {first.parameter} is likeliest ({percent(first.probability)}), but the"
                 " log only shows that another value would stop all that it decides"
             )
+        group = found.blamed_group
+        if group is not None and self._all_only_stop(group):
+            return (
+                f"not sure: {listed(group.parameters, NAMED)} are likeliest"
+                f" ({percent(group.probability)} together), but the log only shows that another"
+                " value would stop all that they decide"
+            )
         if not found.suspects and self.unreported:
             return f"not sure: {self._silent}"
         return found.text
@@ -153,3 +165,7 @@ class Diagnosis:
 
 def _it(found: tuple[Difference, ...]) -> str:
     return "it" if len(found) == 1 else "them"
+
+
+def _only_stops(one: BlamedAdvice) -> bool:
+    return one.stops and one.remedy.basis not in {"reference", "before"}

@@ -239,6 +239,14 @@ class Blame:
         return self.suspects[0].parameter if sure else None
 
     @property
+    def blamed_group(self) -> SuspectGroup | None:
+        """The group of the first suspect if it is sure enough that it is one of these."""
+        if not self.suspects or self.accused is not None:
+            return None
+        group = group_of(self.groups, self.suspects[0].parameter)
+        return group if group is not None and group.probability >= SURE else None
+
+    @property
     def text(self) -> str:
         """The judgement in one line."""
         if not self.suspects:
@@ -247,8 +255,8 @@ class Blame:
         name, sure = first.parameter, percent(first.probability)
         if self.accused is not None:
             return f"blame {name}: {sure}; none of the parameters: {percent(self.none)}"
-        group = group_of(self.groups, name)
-        if group is not None and group.probability >= SURE:
+        group = self.blamed_group
+        if group is not None:
             members = listed(group.parameters, NAMED)
             return (
                 f"blame one of {members}: {percent(group.probability)}, as they"
