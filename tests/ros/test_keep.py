@@ -58,7 +58,7 @@ mark.publish(rospy.Time.now())
 time.sleep(0.5)
 """
 
-# COUNT marks, PAUSE seconds apart, told once and to who listens then; the first says when it begins.
+# COUNT marks, PAUSE seconds apart, told once, and only to who listens then.
 MARKS = """\
 import rospy, sys, time
 from std_msgs.msg import Time

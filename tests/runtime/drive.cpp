@@ -129,9 +129,9 @@ bool hasFile(const std::string &End) {
   return false;
 }
 
-/// seldom COUNT [END]: key 1 is true once; key 0 is true every millisecond until
-/// there is a file whose name ends with END, and then COUNT times, and their
-/// number is printed; then key 1 is false.
+/// seldom COUNT [END]: key 1 is true once; key 0 is true every millisecond
+/// until there is a file whose name ends with END, and then COUNT times, and
+/// their number is printed; then key 1 is false.
 int seldom(const Arguments &A) {
   Keys K(2);
   long More = std::stol(A[0]), Count = 0;
