@@ -356,8 +356,9 @@ void Runtime::turnRing(int64_t Now) {
   ReadNames::all().startAgain();
   if (Filled.Policy == Policy::Light)
     lookAgain();
+  // Not Now: a new file may take its time, and reports go to the old one.
   if (Old)
-    Segments.leave(*Old, Now);
+    Segments.leave(*Old, Clock::steady());
 }
 
 bool Runtime::apply(const Config &Wanted) {

@@ -23,6 +23,7 @@ from pytpc.base.signals import Stop
 from pytpc.base.wording import listed, many
 from pytpc.ingest.file_counts import FileCounter
 from pytpc.ingest.ring_files import FoundRings, keep_segments, remove_ended, rings_in
+from pytpc.recording.marks import MarkMessages
 from pytpc.recording.mission import REPORTS_FOLDER
 from pytpc.ros.mission_run import (
     MissionRun,
@@ -34,6 +35,7 @@ from pytpc.ros.mission_run import (
 )
 from pytpc.ros.ros1.record_mission import record_graph
 from pytpc.ros.ros2.graph_recording import record_ros2_graph
+from pytpc.ros.source import Source
 
 # For so long the graph is listened to by who keeps once: observers tell marks that nobody has heard
 # yet to each new listener, and nodes of ROS 2 their values.
@@ -60,7 +62,7 @@ class KeepOptions:
 
     Attributes:
         folder: where the nodes write their files.
-        minutes: how much is kept; None: all that there is.
+        minutes: how much is kept; None: all that rings have, see `FoundRings.recent`.
         ros: the graph that is asked, ROS 1 or 2 of ``env``; None: none.
         env: says which graph it is.
         record: what a recording of the graph has besides: the static information of the nodes, and
@@ -154,38 +156,55 @@ class Keeper:
             RunError: there is no graph.
             TpcError: the folder cannot be written.
         """
-        while not stop.is_set():
-            with _temporary(self._into) as new:
-                listening = Listening(self._options, new)
-                marks = self._wait_for_marks(listening, stop)
-                if not marks:
-                    self._check(listening, stop, on_fault)
-                    continue
-                if self._is_full():
-                    on_fault(
-                        f"{many(marks, 'mark')} without a recording: there are"
-                        f" {many(self._count, 'recording')} with {self._bytes >> 20:,} MiB already"
-                        " (--most, --most-mib)"
-                    )
-                    listening.finish()
-                    continue
-                try:
-                    kept = self._keep(new, listening)
-                except TpcError as error:
-                    on_fault(str(error))
-                    continue
-            self._count += 1
-            self._bytes += kept.bytes
-            on_kept(kept)
-
-    def _keep(self, new: Path, listening: Listening) -> Kept:
+        part = _Part(self._options, self._into, {})
+        following: _Part | None = None
         try:
-            _require(self._options)
-            found = _keep_files(self._options, new)
+            while True:
+                marks = self._wait_for_marks(part.listening, stop)
+                if not marks:
+                    self._check(part.listening, stop, on_fault)
+                if not stop.is_set():
+                    # Most observers say a mark once: the next one listens before this one ends.
+                    following = _Part(self._options, self._into, part.listening.latched)
+                if marks:
+                    if following is not None:
+                        _wait_until_it_hears(following.listening, stop)
+                    try:
+                        self._keep(part, marks, on_kept, on_fault)
+                    except TpcError as error:
+                        on_fault(str(error))
+                part.end()
+                if following is None:
+                    return
+                part, following = following, None
         finally:
-            run = listening.finish()
+            for left in (part, following):
+                if left is not None:
+                    left.end()
+
+    def _keep(
+        self,
+        part: _Part,
+        marks: int,
+        on_kept: Callable[[Kept], None],
+        on_fault: Callable[[str], None],
+    ) -> None:
+        if self._is_full():
+            on_fault(
+                f"{many(marks, 'mark')} without a recording: there are"
+                f" {many(self._count, 'recording')} with {self._bytes >> 20:,} MiB already"
+                " (--most, --most-mib)"
+            )
+            return
+        _require(self._options)
+        found = _keep_files(self._options, part.folder)
+        run = part.listening.finish()
         out = _free(self._into / time.strftime("keep-%Y%m%d-%H%M%S"))
-        return _finished(self._options, _Gathered(new, found, run, listening.fault), out)
+        gathered = _Gathered(part.folder, found, run, part.listening.fault)
+        kept = _finished(self._options, gathered, out)
+        self._count += 1
+        self._bytes += kept.bytes
+        on_kept(kept)
 
     def _is_full(self) -> bool:
         return self._count >= self._most or self._bytes >= self._most_bytes
@@ -199,6 +218,9 @@ class Keeper:
             self._has_told &= not listening.has_begun
             if marks > seen:
                 first, last = first or now, now
+            if not marks:
+                # The only one was taken back.
+                first = 0.0
             seen = marks
             if first and (now >= last + self._after_s or now >= first + _LONGEST_S + self._after_s):
                 return seen
@@ -228,18 +250,26 @@ class Keeper:
 class Listening(threading.Thread):
     """Records a graph without its reports, while the nodes write these to their rings.
 
-    ``marks`` counts what was heard. ``fault`` says why there is no graph, and is empty if there is
-    one; ``has_begun`` says that it was found.
+    ``marks`` counts what was heard, and ``latched`` has the last time of each publisher that tells
+    it to whoever listens next: that one knows it by then. ``fault`` says why there is no graph, and
+    is empty if there is one; ``has_begun`` says that it was found.
     """
 
-    def __init__(self, options: KeepOptions, folder: Path) -> None:
-        """Begin, if a graph is to be asked."""
+    def __init__(
+        self,
+        options: KeepOptions,
+        folder: Path,
+        latched: Mapping[tuple[str, str], int] | None = None,
+    ) -> None:
+        """Begin, if a graph is to be asked; ``latched``: what was heard before."""
         super().__init__(name="listening", daemon=True)
         self._options = options
         self._folder = folder
         self._stop_asked = threading.Event()
         self._run: MissionRun | None = None
+        self._marks = MarkMessages()
         self.marks = 0
+        self.latched = dict(latched or {})
         self.has_begun = False
         self.fault = ""
         if options.ros is None:
@@ -250,7 +280,11 @@ class Listening(threading.Thread):
     def run(self) -> None:
         """Record until the end."""
         options = replace(
-            self._options.record, out_dir=self._folder, reports=False, on_progress=self._see
+            self._options.record,
+            out_dir=self._folder,
+            reports=False,
+            on_progress=self._see,
+            on_mark=self._hear,
         )
         env = self._options.env
         try:
@@ -261,9 +295,17 @@ class Listening(threading.Thread):
         except (TpcError, OSError) as error:
             self.fault = str(error)
 
-    def _see(self, progress: Progress) -> None:
+    def _see(self, _progress: Progress) -> None:
         self.has_begun = True
-        self.marks = progress.marks
+
+    def _hear(self, source: Source, time_ns: int) -> None:
+        if source.latched:
+            whose = source.topic, source.node
+            if self.latched.get(whose) == time_ns:
+                return
+            self.latched[whose] = time_ns
+        self._marks.add_time(source.topic, time_ns or time.time_ns())
+        self.marks = self._marks.count
 
     def finish(self) -> MissionRun | None:
         """End it; how it went, None without a graph."""
@@ -271,6 +313,36 @@ class Listening(threading.Thread):
         if self.ident is not None:
             self.join()
         return self._run
+
+
+class _Part:
+    """The folder of a recording to come, hidden until then, and who listens for it."""
+
+    def __init__(
+        self, options: KeepOptions, into: Path, latched: Mapping[tuple[str, str], int]
+    ) -> None:
+        """See `Listening`.
+
+        Raises:
+            TpcError: the folder cannot be made.
+        """
+        self._end = contextlib.ExitStack()
+        self.folder = self._end.enter_context(_temporary(into))
+        self.listening = Listening(options, self.folder, latched)
+
+    def end(self) -> None:
+        """End the listening; the folder is removed, unless it is a recording by now."""
+        self.listening.finish()
+        self._end.close()
+
+
+def _wait_until_it_hears(listening: Listening, stop: threading.Event | Stop) -> None:
+    """Wait until it is connected to those who mark."""
+    until = float("inf")
+    while time.monotonic() < until and listening.is_alive() and not stop.is_set():
+        if listening.has_begun:
+            until = min(until, time.monotonic() + _HEARD_S)
+        time.sleep(_TURN_S)
 
 
 def _require(options: KeepOptions) -> None:

@@ -16,7 +16,7 @@ from pytpc.api.keeping import Keeper, KeepOptions, Kept, keep, remove_ended
 from pytpc.api.record import RecordOptions, files_folder
 from pytpc.api.static_of_mission import GIVE, NONE_FOUND, static_to_keep
 from pytpc.base.errors import InputError, RunError
-from pytpc.base.signals import Stop
+from pytpc.base.signals import Stop, signals_end
 from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import JSON, PATH, as_object
 from pytpc.cli.console import print_json, progress, tell_next, telling, warn
@@ -54,7 +54,7 @@ class _KeepArguments:
 @click.option(
     "--minutes",
     type=click.FloatRange(min=0.0, min_open=True),
-    help="Keep the last MINUTES. [default: all that the rings have]",
+    help="Keep the last MINUTES. [default: as many as the longest ring has, at least 10]",
     metavar="MINUTES",
 )
 @click.option(
@@ -138,7 +138,7 @@ def keep_command(given: _KeepArguments) -> None:
         _keep_on_marks(given, options)
         return
     out = given.output or _OUT / time.strftime("keep-%Y%m%d-%H%M%S")
-    with telling("keeping the last minutes"):
+    with signals_end(), telling("keeping the last minutes"):
         kept = keep(options, out)
     if given.as_json:
         print_json(_document(kept))

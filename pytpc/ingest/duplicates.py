@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from pytpc.base.columns import Bools
+from pytpc.base.columns import Bools, Int64s
 from pytpc.base.wording import many
 from pytpc.ingest.gathering import Channel, Gathering, Way
 from pytpc.ingest.spool import Rows
@@ -29,6 +29,7 @@ APART_NS = 60 * 10**9
 _MOST_HELD = 1 << 22
 # Reports are kept from the way that comes first.
 _ORDER: tuple[Way, ...] = ("log", "file", "batch", "events", "aggregate", "text", "topic")
+_SAME = ("key", "node", "count", "flops", "odd", "result", "res")
 _NAMELESS: frozenset[Way] = frozenset({"topic", "text"})
 
 
@@ -154,9 +155,7 @@ class Once:
             )
             if not pairs.size:
                 return
-            begins = np.concatenate([[True], pairs[1:] != pairs[:-1] + 1])
-            begin = np.maximum.accumulate(np.where(begins, np.arange(pairs.size), 0))
-            pairs = pairs[(np.arange(pairs.size) - begin) % 2 == 0]
+            pairs = _every_second(pairs)
             both = np.concatenate([among[pairs], among[pairs + 1]])
             used[both] = True
             found = both[is_later[both]]
@@ -165,6 +164,57 @@ class Once:
             left = np.ones(among.size, np.bool_)
             left[pairs] = left[pairs + 1] = False
             among, signature, times = among[left], signature[left], times[left]
+
+
+def summaries_twice(rows: Rows, channels: list[Channel], tolerance_ns: int) -> Bools:
+    """Which summaries are those of another channel, whose text has rounded their numbers.
+
+    A node with a ring beside its sink tells each summary twice. The two have the same comparison,
+    node, counts and last outcome, and begin and end within the tolerance. Each has at most one
+    partner, never one of its own channel or from the file of another process. What a file has is
+    kept: it is not rounded.
+
+    Args:
+        rows: of type ``SUMMARY_ROW``.
+        channels: those of the rows.
+        tolerance_ns: of the times.
+
+    Returns:
+        bool[n]
+    """
+    twice = np.zeros(rows.size, np.bool_)
+    if np.unique(rows["channel"]).size < 2:
+        return twice
+    is_file = np.array([one.way == "file" for one in channels])[rows["channel"]]
+    codes = {name: code for code, name in enumerate(dict.fromkeys(c.process for c in channels))}
+    process = np.array([codes[one.process] for one in channels])[rows["channel"]]
+    nobody = codes.get("", -1)
+    order = np.lexsort((rows["channel"], rows["begin_ns"], *(rows[name] for name in _SAME)))
+    while order.size > 1:
+        before, after = order[:-1], order[1:]
+        near = rows["channel"][before] != rows["channel"][after]
+        for name in _SAME:
+            near &= rows[name][before] == rows[name][after]
+        for name in ("begin_ns", "end_ns"):
+            near &= np.abs(rows[name][before] - rows[name][after]) <= tolerance_ns
+        own, other = process[before], process[after]
+        near &= (own == other) | (own == nobody) | (other == nobody)
+        pairs = _every_second(np.flatnonzero(near))
+        if not pairs.size:
+            break
+        first, second = order[pairs], order[pairs + 1]
+        twice[np.where(is_file[second] & ~is_file[first], first, second)] = True
+        left = np.ones(order.size, np.bool_)
+        left[pairs] = left[pairs + 1] = False
+        order = order[left]
+    return twice
+
+
+def _every_second(pairs: Int64s) -> Int64s:
+    """Of pairs of neighbours, by the place of the first: every second one in a chain of them."""
+    begins = np.concatenate([[True], pairs[1:] != pairs[:-1] + 1])[: pairs.size]
+    begin = np.maximum.accumulate(np.where(begins, np.arange(pairs.size), 0))
+    return pairs[(np.arange(pairs.size) - begin) % 2 == 0]
 
 
 def clock_notes(channels: list[Channel]) -> Iterator[str]:

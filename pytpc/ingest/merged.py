@@ -14,7 +14,13 @@ import pyarrow as pa
 
 from pytpc.base.atomic import replacing
 from pytpc.base.columns import recode, sorted_words, table_writer, to_arrow
-from pytpc.ingest.duplicates import APART_NS, TOLERANCE_NS, Once, clock_notes
+from pytpc.ingest.duplicates import (
+    APART_NS,
+    TOLERANCE_NS,
+    Once,
+    clock_notes,
+    summaries_twice,
+)
 from pytpc.ingest.gathering import EVENT_ROW, SUMMARY_ROW, Gathering, Progress
 from pytpc.ingest.spool import Rows
 from pytpc.recording.events import Events
@@ -25,6 +31,7 @@ from pytpc.recording.parameter_values import ParameterValues
 from pytpc.recording.summaries import Summaries
 
 _MOST_CHANGES = 5
+_MOST_HELD = 1 << 20
 _Table = TypeVar("_Table", Events, Summaries)
 
 
@@ -39,6 +46,7 @@ class Merged:
     last_ns: int = -(2**63)
     events: int = 0
     summaries: int = 0
+    _twice: int = 0
     _once: Once = field(init=False)
 
     def __post_init__(self) -> None:
@@ -70,11 +78,15 @@ class Merged:
 
     def summary_blocks(self) -> Iterator[Rows]:
         """The summaries in the order of their beginning, without duplicates."""
-        self.summaries = 0
+        self.summaries = self._twice = 0
         held: Rows | None = None
+        apart_ns = self.tolerance_ns if self._may_repeat else 0
         for block in map(self._moved, self.gathering.summaries.blocks()):
             rows = block if held is None else np.concatenate([held, block])
-            cut = int(np.searchsorted(rows["begin_ns"], rows["begin_ns"][-1], "left"))
+            # Between two that cannot be the same one.
+            gaps = np.flatnonzero(np.diff(rows["begin_ns"]) > apart_ns)
+            cut = int(gaps[-1]) + 1 if gaps.size else 0
+            cut = cut if rows.size - cut <= _MOST_HELD else rows.size
             yield from self._each_once(rows[:cut])
             held = rows[cut:]
         if held is not None:
@@ -89,11 +101,14 @@ class Merged:
         )
 
     def _each_once(self, rows: Rows) -> Iterator[Rows]:
-        """Drop summaries that came by two channels: they are equal in all fields."""
-        if self._may_repeat:
+        """Drop summaries that came by two channels: they are equal in all fields, or nearly."""
+        if self._may_repeat and rows.size:
             rest = [name for name in SUMMARY_ROW.names or () if name != "channel"]
             _, first = np.unique(_packed(rows[rest]), return_index=True)
             rows = rows[np.sort(first)]
+            twice = summaries_twice(rows, self.gathering.channels, self.tolerance_ns)
+            self._twice += int(np.count_nonzero(twice))
+            rows = rows[~twice]
         if rows.size:
             self.summaries += rows.size
             yield self._recoded(rows)
@@ -114,6 +129,7 @@ class Merged:
         notes = [
             *gathering.notes,
             *self._once.notes(),
+            *self._summary_notes(),
             *gathering.late_notes,
             *gathering.light_notes(),
             *clock_notes(gathering.channels),
@@ -239,6 +255,11 @@ class Merged:
             spans = [span for span in spans if not _apart(times, span)]
         every = times + [time for span in spans for time in span]
         return (min(every), max(every)) if every else (0, 0)
+
+    def _summary_notes(self) -> Iterator[str]:
+        if self._twice:
+            summaries = "1 summary" if self._twice == 1 else f"{self._twice:,} summaries"
+            yield f"{summaries} that also came another way: counted once"
 
     def _clock_notes(self, marks: tuple[Mark, ...]) -> Iterator[str]:
         times = self._times(marks)

@@ -7,10 +7,12 @@ killed in the middle of a report, and it may remove its oldest file at any momen
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import shutil
 import socket
+import stat
 import time
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
@@ -29,6 +31,8 @@ _SAME_BOOT_NS = 2 * _SECOND
 # A process that writes notes both clocks every second.
 _FRESH_NS = 5 * _SECOND
 _CERTAINLY_ENDED_NS = 60 * _SECOND
+_LEAST_SPAN_NS = 600 * _SECOND
+_UNFINISHED = re.compile(r"-\d+-\d+(-\d+)?\.tpc\.new$")
 _NAME = re.compile(r"-(\d+)-(\d{4,})\.tpc")
 
 
@@ -95,10 +99,24 @@ class FoundRings:
         return sum(one.size for one in self.segments)
 
     def recent(self, minutes: float | None) -> FoundRings:
-        """Those that have something of the last minutes; None: all."""
-        if minutes is None:
+        """Those that have something of the last minutes.
+
+        None: of as many minutes before the last report as the longest ring has, and at least ten.
+        The last files of a process stay when it ends: those of yesterday are none of the last run.
+        """
+        if not self.segments:
             return self
-        kept = [one for one in self.segments if one.ended_ago_ns <= minutes * 60 * _SECOND]
+        if minutes is not None:
+            most_ns = minutes * 60 * _SECOND
+        else:
+            spans: dict[tuple[object, ...], list[int]] = defaultdict(list)
+            for one in self.segments:
+                of_one = spans[_process_of(one.path, one.header)]
+                of_one += [one.began_ago_ns, one.ended_ago_ns]
+            longest = max(max(ago) - min(ago) for ago in spans.values())
+            last = min(one.ended_ago_ns for one in self.segments)
+            most_ns = last + max(longest, _LEAST_SPAN_NS)
+        kept = [one for one in self.segments if one.ended_ago_ns <= most_ns]
         return replace(self, segments=tuple(kept))
 
 
@@ -146,7 +164,8 @@ def _files(folder: Path) -> list[Path]:
 def _process_of(path: Path, header: FileHeader) -> tuple[object, ...]:
     """What the files of one process have in common: a number of a process may come again."""
     named = _NAME.search(path.name)
-    return header.host, header.pid, named[1] if named else path.name
+    # In containers that share the name of the host, several may have one number.
+    return header.host, header.pid, header.program, named[1] if named else path.name
 
 
 def _with_times(files: Sequence[tuple[Path, FileHeader, int]], now: Now) -> Iterator[Segment]:
@@ -223,7 +242,8 @@ def _last_moment(path: Path, header: FileHeader) -> tuple[int, int]:
 def remove_ended(folder: Path, hours: float) -> tuple[int, int]:
     """Remove the files of rings whose process ended so many hours, and a minute, ago.
 
-    A process removes its own files only, so those of the last one of each node stay.
+    A process removes its own files only, so those of the last one of each node stay. Files that a
+    process was making when it was killed are removed, too: they have no report.
 
     Returns:
         How many, and their bytes.
@@ -251,7 +271,24 @@ def remove_ended(folder: Path, hours: float) -> tuple[int, int]:
                 raise TpcError(what, one.path) from error
             count += 1
             size += one.size
+    for path, bytes_of_it in _left_unfinished(folder, least_ns):
+        with contextlib.suppress(OSError):
+            path.unlink()
+            count += 1
+            size += bytes_of_it
     return count, size
+
+
+def _left_unfinished(folder: Path, least_ns: float) -> Iterator[tuple[Path, int]]:
+    """Files that are being made for so long, which takes a moment, and their bytes."""
+    with contextlib.suppress(OSError):
+        for path in sorted(folder.iterdir()):
+            if _UNFINISHED.search(path.name) is None:
+                continue
+            with contextlib.suppress(OSError):
+                its = path.lstat()
+                if stat.S_ISREG(its.st_mode) and time.time_ns() - its.st_mtime_ns >= least_ns:
+                    yield path, its.st_blocks * 512
 
 
 # --- keeping them

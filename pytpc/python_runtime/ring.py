@@ -86,6 +86,10 @@ class Ring:
             return True
         return now.used + _HALF_BYTES >= self._config.segment_bytes
 
+    def rest(self) -> None:
+        """Nothing is written: there is nothing to do for a while."""
+        self._not_before_ns = monotonic_ns() + SECOND
+
     def failed(self, error: OSError) -> None:
         """A file could not be begun; says so once."""
         self._not_before_ns = monotonic_ns() + _AGAIN_NS

@@ -295,6 +295,7 @@ class Runtime:
         config = self.config.filled_in()
         old, to_file = self.file, self._to_file
         if config.sink == "off":
+            ring.rest()
             return
         if to_file is None:
             # It could not be begun with the sink, which goes on as it is until it can.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import time
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Protocol
 
 from pytpc.ingest.decoders import ROS1, Decoders
@@ -77,6 +77,7 @@ class Recorder:
         self._is_reporting = False
         self._dropped: dict[tuple[str, str, str], Dropped] = {}
         self._marks = MarkMessages()
+        self._told_mark: Callable[[Source, int], None] | None = None
         self._done_ns: int | None = None
         self._early: list[tuple[Source, bytes, int]] = []
         self._is_held = False
@@ -99,6 +100,10 @@ class Recorder:
     def see_sim_time(self, simulated: bool) -> None:
         """Whether /use_sim_time is set by now; any thread may say so, ``settle`` acts on it."""
         self._seen = simulated
+
+    def tell_marks(self, told: Callable[[Source, int], None] | None) -> None:
+        """Call ``told`` with each mark, and each that is taken back, and its time in ns."""
+        self._told_mark = told
 
     def settle(self) -> None:
         """Put the messages that were kept into the bag, once it is known what the clock is.
@@ -158,7 +163,10 @@ class Recorder:
         elif MarkMessages.message_type(source.topic) == "Time":
             # Who reads the bag says what is wrong with a message that is none.
             with contextlib.suppress(ValueError):
-                self._marks.add_time(source.topic, self._decoders.time(data) or self.now_ns())
+                time_ns = self._decoders.time(data)
+                self._marks.add_time(source.topic, time_ns or self.now_ns())
+                if self._told_mark is not None:
+                    self._told_mark(source, time_ns)
 
     def _see_dropped(self, node: str, text: bytes) -> None:
         """Count what the process of ``node`` says in this text that it dropped."""

@@ -31,6 +31,7 @@ from pytpc.recording.mission import (
     Dropped,
     is_converted,
 )
+from pytpc.ros.source import Source
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.origins import ORIGINS_FILE, PARAMS_FILE, START_FILE
 
@@ -172,6 +173,8 @@ class RecordOptions:
         on_quiet: called by another thread if nodes report nothing, with the reason as a line, and
             whether that is a fault.
         on_died: called with each node of the launch file that dies.
+        on_mark: called by the thread that records with each message of a mark, or of one that is
+            taken back, and its time in ns, 0 where it has none.
         reports: reports that come over a running graph are recorded; else only marks and values.
     """
 
@@ -193,6 +196,7 @@ class RecordOptions:
     on_doubt: Callable[[str], None] | None = None
     on_quiet: Callable[[str, bool], None] | None = None
     on_died: Callable[[DiedNode], None] | None = None
+    on_mark: Callable[[Source, int], None] | None = None
     reports: bool = True
 
 

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import textwrap
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -18,13 +19,14 @@ from click.testing import CliRunner
 from test_python_runtime_file import PRELUDE, ROOT
 
 from patience import PATIENCE_S, wait_for
-from pytpc.api.keeping import KeepOptions, keep
+from pytpc.api.keeping import KeepOptions, Listening, keep
 from pytpc.api.record import node_files
 from pytpc.base.errors import InputError, RunError
 from pytpc.cli.main import main
 from pytpc.ingest.reading import read
 from pytpc.ingest.ring_files import Now, copy_written, remove_ended, rings_in
 from pytpc.python_runtime import log_layout as layout
+from pytpc.ros.source import Source
 
 S = 10**9
 HERE = socket.gethostname()
@@ -90,6 +92,62 @@ def test_the_last_minutes(tmp_path):
     assert found.processes == 1
 
 
+def test_the_files_of_yesterday(tmp_path):
+    """Without --minutes: the last run, and one that crashed 8 minutes before its end; not older.
+
+    One of 60 s ended 5000 s ago; one of 60 s ended 490 s ago; the last one was written 10 s ago.
+    """
+    segment(tmp_path, 1, 1000, real_s=50_000, last_s=1060, pid=NOBODY)
+    segment(tmp_path, 1, 5510, real_s=54_510, last_s=5570, pid=NOBODY + 1)
+    segment(tmp_path, 1, 5990, real_s=54_990, last_s=6050, pid=NOBODY + 2)
+    found = rings_in(tmp_path, now(6060, 55_060))
+    assert [round(one.ended_ago_ns / S) for one in found.recent(None).segments] == [490, 10]
+    assert len(found.recent(1000).segments) == 3
+    # An hour after the last one ended, it is still the last one.
+    found = rings_in(tmp_path, now(9650, 58_650))
+    assert [round(one.ended_ago_ns / S) for one in found.recent(None).segments] == [4080, 3600]
+
+
+def test_the_minutes_of_the_longest_ring(tmp_path):
+    """One of 2000 s ended 1500 s ago, and runs again since 100 s."""
+    segment(tmp_path, 1, 1000, real_s=50_000, pid=NOBODY)
+    segment(tmp_path, 2, 2000, real_s=51_000, last_s=3000, pid=NOBODY)
+    segment(tmp_path, 1, 4400, real_s=53_400, last_s=4500, pid=NOBODY + 1)
+    found = rings_in(tmp_path, now(4500, 53_500)).recent(None)
+    # The first ended 2500 s ago.
+    assert [(one.header.pid - NOBODY, one.header.segment) for one in found.segments] == [
+        (0, 2),
+        (1, 1),
+    ]
+
+
+def test_a_clock_that_was_set_back(tmp_path):
+    """By an hour, while the second file was written; the steady clock says how old they are."""
+    segment(tmp_path, 1, 1000, real_s=50_000)
+    path = segment(tmp_path, 2, 1100, real_s=50_100, last_s=1190)
+    data = bytearray(path.read_bytes())
+    layout.pack_integers(data, 4096 + 68, 0, 1190 * S, 46_590 * S, 0)
+    path.write_bytes(data)
+    found = rings_in(tmp_path, now(1200, 46_600))
+    assert [round(one.ended_ago_ns / S) for one in found.segments] == [100, 10]
+    # The last note of a file is the one that was written last, whatever the wall clock said.
+    assert numbers(found.recent(1)) == [2]
+
+
+def test_two_nodes_of_one_name(tmp_path):
+    """Both write at the same time, and in containers of one host even under one number."""
+    for number in (1, 2):
+        segment(tmp_path, number, 1000, real_s=50_000, pid=NOBODY)
+    for number in (3, 4):
+        path = segment(tmp_path, number, 1000, real_s=50_000, pid=NOBODY)
+        data = path.read_bytes().replace(b"/bin/guard", b"/bin/other")
+        path.write_bytes(data)
+    segment(tmp_path, 1, 1000, real_s=50_000, pid=NOBODY + 1)
+    found = rings_in(tmp_path, now(1010, 50_010))
+    assert found.processes == 3
+    assert len(found.recent(1).segments) == 5
+
+
 def test_a_clock_that_was_set_forward(tmp_path):
     """The clock said 1970 until the robot had a network: 1100 s of uptime are 1100 s of 1970."""
     segment(tmp_path, 1, 1000, real_s=1000)
@@ -150,6 +208,20 @@ def test_remove_ended(tmp_path):
     assert not late.exists()
     assert fresh.exists()
     assert other.exists()
+
+
+def test_remove_what_a_kill_left_unfinished(tmp_path):
+    """A file that was being made an hour ago; not one of this moment, nor another's."""
+    old = tmp_path / "guard-7-1000-0002.tpc.new"
+    fresh = tmp_path / "guard-8-1000-0002.tpc.new"
+    other = tmp_path / "mine.tpc.new"
+    for path in (old, fresh, other):
+        path.write_bytes(b"TPCLOG1")
+    for path in (old, other):
+        os.utime(path, (time.time() - 3600, time.time() - 3600))
+    assert remove_ended(tmp_path, 2)[0] == 0
+    assert remove_ended(tmp_path, 0)[0] == 1
+    assert sorted(path.name for path in tmp_path.iterdir()) == [fresh.name, other.name]
 
 
 # --- keeping them
@@ -298,6 +370,27 @@ def test_the_copy_has_the_chunks_of_one_moment(tmp_path):
         copy_written(stream, copy)
     kinds = [copy.getvalue()[place] for place in places]
     assert kinds == [layout.THREAD_CHUNK, layout.SYSTEM_CHUNK, 0, layout.SYSTEM_CHUNK]
+
+
+def test_a_mark_that_is_latched(tmp_path):
+    """It comes again to each listener, and makes one recording; a new one makes another."""
+
+    def source(topic: str, node: str, *, latched: bool) -> Source:
+        return Source(topic, node, "std_msgs/Time", "", "", latched=latched)
+
+    again, once = source("/mark_action", "/a", latched=True), source("/m", "/b", latched=False)
+    first = Listening(KeepOptions(tmp_path), tmp_path)
+    first._hear(again, 7 * S)
+    assert first.marks == 1
+    second = Listening(KeepOptions(tmp_path), tmp_path, first.latched)
+    second._hear(again, 7 * S)
+    assert second.marks == 0
+    third = Listening(KeepOptions(tmp_path), tmp_path, second.latched)
+    third._hear(again, 8 * S)
+    assert third.marks == 1
+    for _ in range(2):
+        third._hear(replace(once, topic="/ana/mark_action"), 0)
+    assert third.marks >= 2
 
 
 def test_left_folders_of_killed_runs(tmp_path):

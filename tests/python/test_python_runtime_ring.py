@@ -39,7 +39,10 @@ def headers(folder: Path) -> list[FileHeader]:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_killed_while_it_turns(tmp_path, seed):
-    """Every report up to the kill is in the files, in order; the kill is in one of four turns."""
+    """Every report up to the kill is in the files, in order; the kill is in one of four turns.
+
+    Where the machine is so slow that the first file was removed, those from the second one on.
+    """
     last = random.Random(seed).randrange(2, 6)
     done = run(
         tmp_path,
@@ -57,7 +60,10 @@ def test_killed_while_it_turns(tmp_path, seed):
     )
     assert done.returncode == -signal.SIGKILL, done.stderr
     assert len(files(tmp_path)) >= 2
-    assert [cmp for _, _, cmp, _ in rows(tmp_path)] == list(range(int(done.stdout)))
+    numbers = [int(cmp) for _, _, cmp, _ in rows(tmp_path)]
+    assert numbers == list(range(numbers[0], int(done.stdout)))
+    if headers(tmp_path)[0].segment == 1:
+        assert numbers[0] == 0
     found = recording(tmp_path)
     assert (found.malformed, found.lost, found.dropped) == (0, {}, ())
 

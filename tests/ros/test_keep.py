@@ -58,6 +58,20 @@ mark.publish(rospy.Time.now())
 time.sleep(0.5)
 """
 
+# COUNT marks, PAUSE seconds apart, told once, and only to who listens then.
+MARKS = """\
+import rospy, sys, time
+from std_msgs.msg import Time
+rospy.init_node("observer", anonymous=True)
+mark = rospy.Publisher("/ana/mark_action", Time, queue_size=1000)
+while not mark.get_num_connections():
+    time.sleep(0.05)
+for number in range(int(sys.argv[1])):
+    mark.publish(rospy.Time(1000 + number))
+    time.sleep(float(sys.argv[2]))
+time.sleep(0.5)
+"""
+
 probe = subprocess.run([PYTHON, "-c", "import rospy"], check=False, capture_output=True, timeout=60)
 if probe.returncode:
     pytest.skip("rospy is not installed", allow_module_level=True)
@@ -113,6 +127,10 @@ class Robot:
         out, said = process.communicate(timeout=PATIENCE_S)
         assert process.returncode == 0, said
         return out
+
+    def marks(self, count: int, pause_s: float) -> None:
+        words = [PYTHON, "-c", MARKS, str(count), str(pause_s)]
+        subprocess.run(words, env=self.env, check=True, timeout=PATIENCE_S)
 
     def mark(self) -> None:
         subprocess.run([PYTHON, "-c", MARK], env=self.env, check=True, timeout=PATIENCE_S)
@@ -174,6 +192,64 @@ def test_after_a_mark(robot: Robot) -> None:
     assert [(mark.type, mark.observer) for mark in recording.marks] == [("I", "ana")]
     ranked = json.loads(robot.told("rank", str(folder), "--json"))
     assert ranked[0]["diagnosis"]["suspects"][0]["parameter"] == "~limit"
+
+
+def test_marks_while_it_keeps(robot: Robot) -> None:
+    """Thirty, over 12 s in which several recordings are made; SIGTERM keeps the last ones."""
+    keeping = robot.pytpc("keep", "--on-marks", "--after", "0.3", "-o", "kept", "--json")
+    try:
+        wait_for(lambda: list(robot.folder.glob("kept/.keep-*/mission.bag.active")))
+        robot.marks(30, 0.4)
+        keeping.terminate()
+        _, said = keeping.communicate(timeout=PATIENCE_S)
+    finally:
+        keeping.kill()
+    assert (keeping.returncode, "error" in said) == (0, False), said
+    folders = list(robot.folder.glob("kept/keep-*"))
+    assert len(folders) > 1
+    assert list(robot.folder.glob("kept/.keep-*")) == []
+    found = {mark.time_ns // 10**9 for folder in folders for mark in read(folder).marks}
+    assert found == set(range(1000, 1030))
+
+
+def test_no_more_than_most(robot: Robot) -> None:
+    """Three marks at once make one recording; a later one is told, and not kept."""
+    words = ["keep", "--on-marks", "--after", "3", "--most", "1", "-o", "kept", "--json"]
+    keeping = robot.pytpc(*words)
+    try:
+        wait_for(lambda: list(robot.folder.glob("kept/.keep-*/mission.bag.active")))
+        robot.marks(3, 0)
+        wait_for(lambda: list(robot.folder.glob("kept/keep-*")))
+        robot.mark()
+        keeping.send_signal(signal.SIGINT)
+        out, said = keeping.communicate(timeout=PATIENCE_S)
+    finally:
+        keeping.kill()
+    assert json.loads(out)["marks"] == 3
+    assert "1 mark without a recording: there are 1 recording with" in said
+    assert len(list(robot.folder.glob("kept/*"))) == 1
+
+
+def test_with_the_bag_of_the_same_node(robot: Robot) -> None:
+    """What the node told to both is counted once: no more than it evaluated, 100 a second."""
+    recording = robot.pytpc("record", "-o", "bag")
+    try:
+        wait_for(lambda: list(robot.folder.glob("bag/mission.bag.active")))
+        (robot.folder / "go").touch()
+        wait_for(_has_turned(robot))
+        robot.told("keep", "-o", "kept")
+        recording.send_signal(signal.SIGINT)
+        recording.communicate(timeout=PATIENCE_S)
+    finally:
+        recording.kill()
+    bag, kept = (read(robot.folder / name).summaries for name in ("bag", "kept"))
+    both = read([robot.folder / "bag", robot.folder / "kept"])
+    # All of the bag but what came after the files were kept.
+    later = int((bag.begin_ns >= kept.begin_ns.max() + 10**6).sum())
+    earlier = int((kept.begin_ns < bag.begin_ns.min() - 10**6).sum())
+    assert len(both.summaries) == len(kept) + later
+    assert earlier + len(bag) - later <= len(kept)
+    assert any("counted once" in note for note in both.notes)
 
 
 def _has_turned(robot: Robot):

@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <pthread.h>
@@ -115,17 +116,34 @@ int counted(const Arguments &A) {
     pause();
 }
 
-/// seldom MS: key 1 is true once; key 0 is true every millisecond for MS, and
+/// Whether the folder of reports has a file whose name ends with \p End.
+bool hasFile(const std::string &End) {
+  std::error_code None;
+  for (auto &One :
+       std::filesystem::directory_iterator(std::getenv("TPC_FOLDER"), None)) {
+    std::string Name = One.path().filename();
+    if (Name.size() > End.size() &&
+        !Name.compare(Name.size() - End.size(), End.size(), End))
+      return true;
+  }
+  return false;
+}
+
+/// seldom COUNT [END]: key 1 is true once; key 0 is true every millisecond
+/// until there is a file whose name ends with END, and then COUNT times, and
 /// their number is printed; then key 1 is false.
 int seldom(const Arguments &A) {
-  using std::chrono::steady_clock;
   Keys K(2);
-  auto End = steady_clock::now() + std::chrono::milliseconds(std::stol(A[0]));
-  long Count = 0;
+  long More = std::stol(A[0]), Count = 0;
+  bool Waits = A.size() > 1;
   log_one(K[1], true, 3, 2, true);
-  for (; steady_clock::now() < End; ++Count) {
+  for (; Waits || More; ++Count) {
     log_one(K[0], true, 5, 1, true);
     waitMs(1);
+    if (!Waits)
+      --More;
+    else if (Count % 50 == 0)
+      Waits = !hasFile(A[1]);
   }
   log_one(K[1], false, 1, 2, false);
   std::printf("%ld\n", Count);

@@ -54,6 +54,8 @@ class LogFile:
     dropped: list[tuple[int, int, int, int]] = field(default_factory=list)
     policies: list[tuple[int, int]] = field(default_factory=list)
     torn: int = 0
+    steady_ns: int = 0
+    segment: int = 0
 
     @property
     def all_reports(self) -> list[tuple]:
@@ -74,6 +76,8 @@ def read(path: Path) -> LogFile:
     state, _clock, not_recorded = struct.unpack_from("<IIQ", data, 40)
     node = data[64 : data.index(b"\0", 64)].decode()
     file = LogFile(state, node, not_recorded, len(data))
+    (file.steady_ns,) = struct.unpack_from("<q", data, 24)
+    (file.segment,) = struct.unpack_from("<I", data, 60)
     expected: dict[int, int] = defaultdict(int)
     for place in range(HEADER, len(data) - 63, CHUNK):
         kind, thread, first, _tid = struct.unpack_from("<IIQQ", data, place)

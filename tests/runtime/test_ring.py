@@ -18,6 +18,9 @@ from patience import wait_for
 
 # The shortest one: 3 s, so a file has 0.375 s.
 SHORT = "0.05"
+# 12 s, so a file has 1.5 s: the first three stay, however slow the machine is.
+LONGER = "0.2"
+THIRD = "-0003.tpc"
 
 
 def segments(folder: Path) -> list[LogFile]:
@@ -45,9 +48,15 @@ class Counted:
         self.pid = self._process.pid
 
     def kill(self) -> str:
-        """What it said on standard error."""
+        """What it said on standard error; ``killed_ns`` is when it was gone, in steady time."""
         self._process.send_signal(signal.SIGKILL)
-        return self._process.communicate()[1].decode()
+        said = self._process.communicate()[1].decode()
+        self.killed_ns = time.monotonic_ns()
+        return said
+
+    def has_the_minutes(self, files: list[LogFile]) -> bool:
+        """Whether nothing of the last 3 s was removed."""
+        return files[0].segment == 1 or self.killed_ns - files[0].steady_ns >= 3 * 10**9
 
     @property
     def done(self) -> list[int]:
@@ -86,16 +95,21 @@ def test_killed_while_it_turns(program, settings, tmp_path, seed):
     files = segments(counted.folder)
     lost = sum(file.not_recorded for file in files)
     for done, numbers in zip(counted.done, numbers_of(files, threads), strict=True):
-        assert numbers, "a thread has no report"
+        if not numbers:
+            # It had no processor while another thread filled the budget.
+            assert budget == "4"
+            assert files[0].segment > 1
+            continue
         # Without gaps, from the first one kept to the last one made; the kill may have come
         # between the record and the count. If the thread of the ring gets no processor for so long
         # that a file has the whole budget, what comes meanwhile is counted as not recorded.
         assert -1 <= done - 1 - numbers[-1] <= lost or numbers[-1] == done
         assert lost or numbers == list(range(numbers[0], numbers[-1] + 1))
-        if budget == "4096":
-            assert numbers[0] == 0 or len(files) > 8
+        if files[0].segment == 1:
+            assert numbers[0] == 0
     if budget == "4096":
         assert lost == 0
+        assert counted.has_the_minutes(files)
 
 
 def test_within_the_budget_of_bytes(program, settings, tmp_path):
@@ -125,9 +139,7 @@ def test_within_the_minutes(program, settings, tmp_path):
     names = sorted(path.name for path in counted.folder.glob("*.tpc"))
     assert len(names) <= 12
     assert all(f"-{counted.pid}-" in name for name in names)
-    # The last file may have been made this moment, and have nothing yet.
-    syncs = [steady for file in segments(counted.folder) for steady, *_ in file.syncs]
-    assert max(syncs) - min(syncs) >= 2_500_000_000
+    assert counted.has_the_minutes(segments(counted.folder))
 
 
 def _has(folder: Path, number: int) -> bool:
@@ -223,12 +235,14 @@ def test_what_the_last_file_says_alone(drive, files, policy):
     Key 1 was true once (3 > 2), files ago, and is false (1 > 2) at the end. Key 0 stays true (5 >
     1), so its first evaluation in the file is all that is reported of it.
     """
-    assert drive("seldom", 1500, policy=policy, ring=SHORT).returncode == 0
+    assert drive("seldom", 50, THIRD, policy=policy, ring=LONGER).returncode == 0
     parts = [log_file.read(path) for path in files()]
     assert len(parts) > 2
-    last = _of_keys(parts[-1])
+    # One more may have been begun before the last evaluation, or after it.
+    last = [of for of in map(_of_keys, parts) if 1 in of][-1]
     assert last[1] == [(True, True, 3, 2), (False, False, 1, 2)]
-    assert last[0] == [(True, True, 5, 1)]
+    assert last.get(0, []) in ([], [(True, True, 5, 1)])
+    assert _of_keys(parts[1])[0] == [(True, True, 5, 1)]
     # Read one after the other: one flop of key 1, none of key 0.
     joined = [one for part in parts for one in _of_keys(part).get(1, [])]
     assert [result for result, *_ in joined].count(False) == 1
@@ -244,7 +258,7 @@ def test_what_the_last_file_says_alone(drive, files, policy):
 @pytest.mark.parametrize("policy", ["every", "edges", "light"])
 def test_all_files_together(drive, files, policy):
     """1 + 1 evaluations of key 1; those of key 0 are counted by the program, on its output."""
-    run = drive("seldom", 1200, policy=policy, ring=SHORT)
+    run = drive("seldom", 50, THIRD, policy=policy, ring=LONGER)
     counts = {0: 0, 1: 0}
     for path in files():
         part = log_file.read(path)
@@ -260,7 +274,7 @@ def test_all_files_together(drive, files, policy):
 
 def test_beside_the_default_sink(drive, files):
     """A program without ROS reports nowhere, but to its ring, with the policy of its sink."""
-    run = drive("seldom", 800, sink="auto", ring=SHORT)
+    run = drive("seldom", 50, THIRD, sink="auto", ring=LONGER)
     parts = [log_file.read(path) for path in files()]
     assert len(parts) > 1
     assert {policy for part in parts for policy, _ in part.policies} == {2}

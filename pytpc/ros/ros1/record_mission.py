@@ -7,6 +7,7 @@ with the output of all processes.
 from __future__ import annotations
 
 import contextlib
+import itertools
 import os
 import shutil
 import sys
@@ -57,6 +58,8 @@ _RECORDER_PATIENCE_S = 20.0
 _LAUNCH_PATIENCE_S = 20.0
 _TOLD_S = 0.2
 _TOOLS = ("roslaunch", "rosmaster", "rosparam")
+# One process may record twice at a time: a name that comes again ends the node that has it.
+_NUMBERS = itertools.count(1)
 _INTERRUPTED_EARLY = "the mission was interrupted before roslaunch had set its parameters"
 
 
@@ -335,8 +338,10 @@ def _record_graph(
     keep_static(options)
     began = time.monotonic()
     uri = uri_of(env)
+    number = next(_NUMBERS)
+    name = f"{NODE_NAME}_{os.getpid()}" + (f"_{number}" if number > 1 else "")
     recorder = GraphRecorder(
-        Master(uri, f"{NODE_NAME}_{os.getpid()}"),
+        Master(uri, name),
         own_host(env, uri),
         Wanted(
             [*(DEFAULT_TOPICS if options.reports else MARK_TOPICS), *options.topics],
@@ -345,6 +350,7 @@ def _record_graph(
         out_dir / BAG_FILE,
         strict=False,
     )
+    recorder.tell_marks(options.on_mark)
     beginning = _Beginning(env, launch_env, options)
     quiet = QuietWatch(uri, options.on_quiet)
 

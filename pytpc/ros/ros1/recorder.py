@@ -14,7 +14,7 @@ import contextlib
 import os
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -28,6 +28,7 @@ from pytpc.ros.mission_run import RecorderStatus, save_status
 from pytpc.ros.ros1.bag_file import BagFile
 from pytpc.ros.ros1.master import Master
 from pytpc.ros.ros1.subscriber import RawSubscriber
+from pytpc.ros.source import Source
 
 NODE_NAME = "/tpc_recorder"
 STATUS_PERIOD_S = 0.2
@@ -124,6 +125,10 @@ class GraphRecorder:
         discovery = Discovery(self._subscriber, self._recorder, subscribed)
         # A thread of its own: a master that hangs is given up after seconds.
         threading.Thread(target=self._look, args=(discovery,), daemon=True).start()
+
+    def tell_marks(self, told: Callable[[Source, int], None] | None) -> None:
+        """See `Recorder.tell_marks`."""
+        self._recorder.tell_marks(told)
 
     def step(self) -> RecorderStatus:
         """Take the messages that have come, wait a moment for more, and return the account.

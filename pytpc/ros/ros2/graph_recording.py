@@ -186,6 +186,7 @@ class GraphRecording:
         self._file = McapFile(options.out_dir / MCAP_FILE)
         self._recorder = Recorder(self._file, list(recorded), until, False, ROS2)
         self._recorder.hold()
+        self._recorder.tell_marks(options.on_mark)
         self._topics = dict.fromkeys([*recorded, CLOCK])
         self.command_lines = CommandLines(agent.address.domain)
         self._values = NodeValues(agent)
