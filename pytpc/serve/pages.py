@@ -52,7 +52,7 @@ class PageSocket(CheckedHandler, WebSocketHandler):
         """Nothing is sent yet."""
         super().initialize(server)
         self.observer: str | None = None
-        self.key: str | None = None
+        self.opened: tuple[str, str] | None = None
         self._rate = Rate()
         self._refused = 0
         self._sent: tuple[int, Board] | None = None
@@ -162,14 +162,15 @@ class PageSocket(CheckedHandler, WebSocketHandler):
             to = _number(asked, "to") if "to" in asked else 0.0
             return (await server.play(what, to))._asdict()
         if what == "open":
-            self.key = _text(asked, "key", 100)
-            detail = await server.detail(self.key)
+            key = _text(asked, "key", 100)
+            node = _text(asked, "node", 300) if "node" in asked else ""
+            detail = await server.detail(key, node)
+            self.opened = None if detail is None else (key, node)
             if detail is None:
-                self.key = None
                 return {"ok": False, "said": "this comparison is not known any more"}
             return {"ok": True, "said": "", "detail": detail}
         if what == "close":
-            self.key = None
+            self.opened = None
             return {"ok": True, "said": ""}
         if what in ("plan", "apply"):
             return await self._change(asked)

@@ -38,6 +38,8 @@ from pytpc.serve.pages import Answers, PageSocket
 Done = TypeVar("Done")
 
 _EACH_S = 0.1
+_PATIENCE_S = 0.5
+"""So long a jump in a recording is read before the pages are told how much of it is left."""
 _LINE_EACH = 5
 """The open comparison's line is sent with each so-many-th board."""
 _MOST_CONNECTIONS = 200
@@ -150,7 +152,7 @@ class LiveServer:
         while not self._stopped.is_set():
             began = time.monotonic()
             number += 1
-            await self._on_board(self._board.tick)
+            await self._on_board(partial(self._board.tick, _PATIENCE_S))
             if self.pages:
                 self._newest = number, await self._on_board(self._board.board)
                 for page in list(self.pages):
@@ -163,11 +165,11 @@ class LiveServer:
 
     async def _send_lines(self) -> None:
         """Send the last values of the comparisons that pages look at."""
-        for key in {page.key for page in self.pages if page.key is not None}:
-            line = await self._on_board(partial(self._board.line, key))
+        for opened in {page.opened for page in self.pages if page.opened is not None}:
+            line = await self._on_board(partial(self._board.line, *opened))
             for page in list(self.pages):
-                if page.key == key:
-                    page.offer_line(key, line)
+                if page.opened == opened:
+                    page.offer_line(opened[0], line)
 
     async def _on_board(self, ask: Callable[[], Done]) -> Done:
         return await asyncio.get_running_loop().run_in_executor(self._thread, ask)
@@ -216,9 +218,9 @@ class LiveServer:
         """Move the clock of a recording."""
         return await self._on_board(lambda: self._board.play(what, to))
 
-    async def detail(self, key: str) -> Board | None:
-        """All about a comparison."""
-        return await self._on_board(lambda: self._board.detail(key))
+    async def detail(self, key: str, node: str) -> Board | None:
+        """All about a comparison in a node."""
+        return await self._on_board(lambda: self._board.detail(key, node))
 
     async def plan(self, parameter: str, value: str) -> Planned:
         """Plan a change of a value.

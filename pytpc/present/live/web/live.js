@@ -110,12 +110,14 @@ const showBanner = () => {
     text = state.unsaved;
   } else if (state.gone_since) {
     text = `The graph does not answer since ${since(state.gone_since * 1000)}; waiting for it.`;
+  } else if (state.behind) {
+    text = `Reading the recording up to here: ${Math.ceil(state.behind)} s of it are left.`;
   } else if (state.live && state.quiet_since) {
     text = `No report since ${since(state.quiet_since * 1000)}.`;
   }
   put(byId("banner"), text);
   byId("banner").hidden = text === "";
-  const old = ended || (link !== null && link.lostSince !== null) || (state.gone_since && state.quiet_since);
+  const old = ended || (link !== null && link.lostSince !== null) || (state.gone_since && state.quiet_since) || state.behind > 0;
   byId("board").classList.toggle("old", Boolean(old));
 };
 
@@ -244,7 +246,7 @@ const detail = new Detail((message) => link.ask(message));
 document.addEventListener("click", async (event) => {
   const row = event.target.closest("button[data-key]");
   if (row === null) return;
-  const wrong = await detail.show(row.dataset.key, hello.apply);
+  const wrong = await detail.show(row.dataset.key, row.dataset.node, hello.apply);
   if (wrong) say(wrong, true);
 });
 
