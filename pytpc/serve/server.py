@@ -30,8 +30,8 @@ from pytpc.api.live_observers import Answer, free_name
 from pytpc.api.live_values import LiveValues, Planned
 from pytpc.base.errors import RunError
 from pytpc.recording.marks import is_observer
-from pytpc.serve.access import Access, is_private, names_of, shown_host
-from pytpc.serve.handlers import AssetHandler, PageHandler, QrHandler
+from pytpc.serve.access import Access, host_name, is_private, names_of, shown_host
+from pytpc.serve.handlers import AssetHandler, PageHandler
 from pytpc.serve.limits import LONGEST_MESSAGE
 from pytpc.serve.pages import Answers, PageSocket
 
@@ -81,7 +81,9 @@ class LiveServer:
         self._options = options
         self._socket = _bound(options.host, options.port)
         self.port: int = self._socket.getsockname()[1]
-        self.access = Access(names_of(options.host))
+        # The printed address is served, whatever name ROS has for this machine.
+        shown = host_name(shown_host(options.host, os.environ))
+        self.access = Access(names_of(options.host) | {shown})
         self.pages: set[PageSocket] = set()
         self.answers: dict[str, Answers] = {}
         self._thread = ThreadPoolExecutor(1, "board")
@@ -117,7 +119,6 @@ class LiveServer:
             [
                 (r"/", PageHandler, handled),
                 (r"/assets/([a-z.-]{1,40})", AssetHandler, handled),
-                (r"/qr.svg", QrHandler, handled),
                 (r"/socket", PageSocket, handled),
             ],
             default_handler_class=_NothingHere,

@@ -63,9 +63,9 @@ export const showHelp = (isRecording) => {
   open(dialog("help"));
 };
 
-export const showPhone = () => {
+export const showPhone = (svg) => {
   const found = dialog("phone");
-  found.querySelector("img").src = "/qr.svg";
+  found.querySelector("img").src = `data:image/svg+xml,${encodeURIComponent(svg)}`;
   open(found);
 };
 
