@@ -274,8 +274,12 @@ def _bound(host: str, port: int) -> socket.socket:
         RunError: nobody can listen there.
     """
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    # At all addresses means those of IPv4, too: one of them is printed.
+    both = host == "::" and socket.has_dualstack_ipv6()
     try:
-        found = socket.create_server((host, port), family=family, backlog=_BACKLOG)
+        found = socket.create_server(
+            (host, port), family=family, backlog=_BACKLOG, dualstack_ipv6=both
+        )
     except socket.gaierror as error:
         raise RunError(f"--host {host}: no address of this machine has this name") from error
     except OSError as error:

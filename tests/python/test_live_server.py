@@ -639,6 +639,12 @@ def test_for_a_phone_there_is_a_code(tmp_path: Path):
         assert running.get("/", Host="evil.example", **running.cookie).code == 421
 
 
+@pytest.mark.skipif(not socket.has_dualstack_ipv6(), reason="this machine has no IPv6")
+def test_all_addresses_are_those_of_both_families(tmp_path: Path):
+    with Served(tmp_path, host="::") as running:
+        assert running.get("/", **running.cookie).code == 200
+
+
 # Another name than the machine's own, as ROS may have for it.
 def test_the_printed_name_is_served(tmp_path: Path, monkeypatch):
     monkeypatch.setenv("ROS_HOSTNAME", "Arm.lab.example")
