@@ -61,7 +61,7 @@ class Live:
         request = HTTPRequest(address, headers={"Cookie": cookie, "Origin": self.origin})
         socket = await websocket_connect(request)
         self.board = {}
-        hello = {"do": "hello", "id": "h", "observer": self.observer}
+        hello = {"do": "hello", "id": "h", "observer": self.observer, "token": self.token}
         await socket.write_message(json.dumps(hello))
         return socket
 

@@ -54,6 +54,10 @@ class GraphFeed:
         self._thread = threading.Thread(target=self._listen, daemon=True)
         self._thread.start()
 
+    def stop(self, now_ns: int | None) -> int | None:
+        """How far to `take` at a time: what waits is bounded."""
+        return now_ns
+
     def take(self, now_ns: int | None) -> tuple[Watching, Sequence[Item]]:
         """What has arrived since; nothing while the graph has no time."""
         if now_ns is None:

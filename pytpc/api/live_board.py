@@ -74,10 +74,11 @@ class LiveBoard:
         self._gone_since: float | None = None
         self._heard: tuple[int, float] = (-1, time.monotonic())
         self._made: tuple[object, Board] | None = None
+        self._shown: Board | None = None
 
-    def tick(self) -> None:
-        """Take in what arrived."""
-        self._watched.tick()
+    def tick(self, patience_s: float | None = None) -> None:
+        """Take in what arrived; see `WatchedMission.tick`."""
+        self._watched.tick(patience_s)
         self.observers.flush()
         if not self._watched.is_gone:
             self._gone_since = None
@@ -100,14 +101,17 @@ class LiveBoard:
             "clock": self._clock(view, now_ns),
             "state": self._state(view, self._watched.status().words()),
         }
+        if self._watched.behind_s and self._shown is not None:
+            return {**passing, **self._shown}
         if self._made is None or self._made[0] != of:
             panel = self._watched.panel(now_ns, utf8=True)
             made = self._comparisons(view, now_ns, marks, panel)
             # The ranking is not worked out each time. One of another moment does not stay.
             behind_ns = abs(now_ns - panel.look.now_ns)
             is_old = behind_ns > (_AGAIN_NS if passing["clock"]["rate"] else 0)
-            self._made = None if is_old else of, made
-        return {**passing, **self._made[1]}
+            self._made = None if is_old else (of, made)
+            self._shown = made
+        return {**passing, **(self._shown or {})}
 
     def _comparisons(self, view: View, now_ns: int, marks: Sequence[Mark], panel: Panel) -> Board:
         """What is worked out again only if something is new."""
@@ -117,8 +121,8 @@ class LiveBoard:
         groups = _Groups(panel.look.groups)
         return {
             "window_s": self._window_s,
-            "near": groups.named([_near(row, start_ns) for row in look.near]),
-            "held": groups.named([_near(row, start_ns) for row in look.held]),
+            "near": groups.named(_near_rows(look.near, start_ns)),
+            "held": groups.named(_near_rows(look.held, start_ns)),
             "turns": self._turns(look.turns[:_MOST_TURNS], start_ns),
             "suspects": [
                 {
@@ -138,8 +142,8 @@ class LiveBoard:
             ],
         }
 
-    def detail(self, key: str) -> Board | None:
-        """All about one comparison: its last values, the source around it, and its way.
+    def detail(self, key: str, node: str = "") -> Board | None:
+        """All about one comparison: its last values in a node, the source around it, and its way.
 
         None if there is no comparison of this key.
         """
@@ -164,13 +168,13 @@ class LiveBoard:
                 {"place": plain(step.place), "what": plain(step.what), "here": step.here}
                 for step in way_of(found)
             ],
-            "line": self.line(key),
+            "line": self.line(key, node),
         }
 
-    def line(self, key: str) -> Board:
-        """The last values of one comparison, two minutes or more."""
+    def line(self, key: str, node: str = "") -> Board:
+        """The last values of one comparison in a node, two minutes or more."""
         start_s = self._watched.view().start_ns / 1e9
-        times, values, thresholds = self._watched.watching.line_of(key)
+        times, values, thresholds = self._watched.watching.line_of(key, node)
         return {
             "t": [round(one - start_s, 3) for one in times],
             "value": [_finite(one) for one in values],
@@ -263,6 +267,7 @@ class LiveBoard:
             "gone_since": self._gone_since,
             "quiet_since": round(time.time() - quiet_s) if is_quiet else None,
             "unsaved": plain(self.observers.unsaved),
+            "behind": round(self._watched.behind_s, 1),
         }
 
     def _turns(self, turns: Sequence[Seen], start_ns: int) -> list[Board]:
@@ -344,11 +349,18 @@ def _about(comparison: Comparison, seen: Seen | None) -> Board:
     return found
 
 
-def _near(row: NearRow, start_ns: int) -> Board:
+def _near_rows(rows: Sequence[NearRow], start_ns: int) -> list[Board]:
+    """The rows; those of a comparison that runs in several nodes say in which."""
+    alike = Counter(row.compared.last.key for row in rows)
+    return [_near(row, start_ns, alike[row.compared.last.key] > 1) for row in rows]
+
+
+def _near(row: NearRow, start_ns: int, is_shared: bool) -> Board:
     one: Compared = row.compared
     return {
-        "id": one.last.key,
+        "id": f"{one.last.key} {plain(one.last.node)}",
         **_about(one.comparison, one.last),
+        "shared": is_shared,
         "result": one.last.result,
         "margin": "" if row.margin is None else show(float(f"{row.margin:.3g}")),
         "in_unit": row.in_unit,

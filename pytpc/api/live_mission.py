@@ -34,6 +34,8 @@ _RATE_S = 5.0
 _RANK_S = 0.4
 _RANK_SHARE = 5.0
 _SNAPSHOT_NS = 30 * 10**9
+_MOST_COPIES = 64
+_MOST_AT_ONCE = 20_000
 
 
 def fresh_watching(static_info: StaticInfo, question: Question) -> Watching:
@@ -58,9 +60,13 @@ class RecordedFeed:
     is_gone = False
 
     def __init__(self, recording: Recording, fresh: Watching) -> None:
-        """The clock is at the beginning; a copy is kept every half minute, to go back to."""
+        """The clock is at the beginning; a copy is kept every half minute, to go back to.
+
+        In a long recording there are fewer copies, as each takes memory.
+        """
         self._recording = recording
         self._ends = np.argsort(recording.summaries.end_ns, kind="stable")
+        self._end_ns = recording.summaries.end_ns[self._ends]
         fresh = fresh.snapshot()
         for name in recording.names:
             fresh.take_name(name)
@@ -68,29 +74,46 @@ class RecordedFeed:
         self._place = 0, 0
         self._at_ns = recording.start_ns - 1
         self._copies = [(self._at_ns, self._place, fresh)]
+        self._apart_ns = _SNAPSHOT_NS
+
+    def stop(self, now_ns: int | None) -> int | None:
+        """How far to `take` at a time on the way to ``now_ns``.
+
+        So copies are kept on the way, and a jump over a million reports can be shown as it goes on.
+        """
+        if now_ns is None:
+            return None
+        at_ns = self._at_ns if now_ns >= self._at_ns else self._copy_before(now_ns)[0]
+        stop_ns = min(now_ns, at_ns + _SNAPSHOT_NS)
+        for times in (self._recording.events.time_ns, self._end_ns):
+            most = int(np.searchsorted(times, at_ns, side="right")) + _MOST_AT_ONCE
+            if most < times.size:
+                stop_ns = min(stop_ns, int(times[most]))
+        return stop_ns
 
     def take(self, now_ns: int | None) -> tuple[Watching, Sequence[Item]]:
         """What happened since the last call; if the clock went back, from a kept copy on."""
         if now_ns is None:
             return self._watching, ()
         if now_ns < self._at_ns:
-            at_ns, self._place, copy = max(
-                (one for one in self._copies if one[0] <= now_ns),
-                key=lambda one: one[0],
-                default=self._copies[0],
-            )
-            self._at_ns, self._watching = at_ns, copy.snapshot()
-        elif self._at_ns >= self._copies[-1][0] + _SNAPSHOT_NS:
+            self._at_ns, self._place, copy = self._copy_before(now_ns)
+            self._watching = copy.snapshot()
+        elif self._at_ns >= self._copies[-1][0] + self._apart_ns:
             self._copies.append((self._at_ns, self._place, self._watching.snapshot()))
+            if len(self._copies) > _MOST_COPIES:
+                del self._copies[1::2]
+                self._apart_ns *= 2
         first, second = self._place
-        events, summaries = self._recording.events, self._recording.summaries
-        last = int(np.searchsorted(events.time_ns, now_ns, side="right"))
-        ends = summaries.end_ns[self._ends]
-        end = int(np.searchsorted(ends, now_ns, side="right"))
+        last = int(np.searchsorted(self._recording.events.time_ns, now_ns, side="right"))
+        end = int(np.searchsorted(self._end_ns, now_ns, side="right"))
         items: list[Item] = list(_seen(self._recording, first, last))
         items += [_summary(self._recording, int(row)) for row in self._ends[second:end]]
         self._place, self._at_ns = (last, end), now_ns
         return self._watching, items
+
+    def _copy_before(self, now_ns: int) -> tuple[int, tuple[int, int], Watching]:
+        """The last copy that is kept of a time up to this one; else the first."""
+        return next((one for one in self._copies[::-1] if one[0] <= now_ns), self._copies[0])
 
     def fault(self) -> str:
         """A recording has no connection to lose."""
@@ -119,6 +142,7 @@ class WatchedMission:
 
     Attributes:
         about: further lines to show above the tables; more may be added meanwhile.
+        behind_s: how much of a recording was not read yet when the patience of `tick` ended.
     """
 
     def __init__(
@@ -141,6 +165,7 @@ class WatchedMission:
         self._look: tuple[float, Look, tuple[object, ...]] | None = None
         self._rank_s = _RANK_S
         self.kept = KeptRankings(options.top)
+        self.behind_s = 0.0
         self.watching, _ = feed.take(None)
 
     @property
@@ -189,15 +214,28 @@ class WatchedMission:
         made = change.after is not None and change.before is None
         return self.kept[-1].words() if made else ""
 
-    def tick(self) -> None:
-        """Take in what has arrived."""
+    def tick(self, patience_s: float | None = None) -> None:
+        """Take in what has arrived; with ``patience_s``, the rest of it with the next call."""
         self._mission.tick()
-        self.take()
+        self.take(patience_s)
 
-    def take(self) -> None:
-        """Take in what has arrived up to now."""
+    def take(self, patience_s: float | None = None) -> None:
+        """Take in what has arrived up to now; see `tick`."""
+        began_s = time.monotonic()
+        now_ns = self.now_ns()
+        while True:
+            stop_ns = self._feed.stop(now_ns)
+            self._take_to(stop_ns)
+            if now_ns is None or stop_ns is None or stop_ns >= now_ns:
+                self.behind_s = 0.0
+                return
+            self.behind_s = (now_ns - stop_ns) / 1e9
+            if patience_s is not None and time.monotonic() >= began_s + patience_s:
+                return
+
+    def _take_to(self, now_ns: int | None) -> None:
         before = self.watching
-        self.watching, items = self._feed.take(self.now_ns())
+        self.watching, items = self._feed.take(now_ns)
         if self._judged is not None:
             if self.watching is not before:
                 self._judged.restart()

@@ -19,6 +19,10 @@ _LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})
 class Access:
     """The token, and the names under which this machine serves.
 
+    The cookie is no substitute for it: a browser sends cookies to every port of a host, so that
+    another user's server on this machine may see it. It opens the empty page; the socket, from
+    which all that is shown comes, wants the token.
+
     Another user of the machine, and a page of another site in the same browser, do not know the
     token. A name that an attacker points at this machine (DNS rebinding) is none of ``names``.
     """
@@ -27,23 +31,24 @@ class Access:
     token: str = field(default_factory=lambda: secrets.token_urlsafe(_TOKEN_BYTES))
     # Cookies do not know ports: two servers of one machine must not overwrite each other's.
     cookie: str = field(default_factory=lambda: f"tpc_live_{secrets.token_hex(4)}")
+    cookie_value: str = field(default_factory=lambda: secrets.token_urlsafe(_TOKEN_BYTES))
 
     def knows(self, token: str) -> bool:
         """Whether this is the token; the time that this takes does not tell how much is right."""
-        return hmac.compare_digest(self.token.encode(), token.encode("utf-8", "replace"))
+        return _is_equal(self.token, token)
 
     def has_cookie(self, header: str) -> bool:
-        """Whether a Cookie header has the token."""
+        """Whether a Cookie header has ours."""
         try:
             found = SimpleCookie(header).get(self.cookie)
         except CookieError:
             return False
-        return found is not None and self.knows(found.value)
+        return found is not None and _is_equal(self.cookie_value, found.value)
 
     @property
     def set_cookie(self) -> str:
         """The Set-Cookie header: scripts cannot read it, other sites cannot send it."""
-        return f"{self.cookie}={self.token}; Path=/; HttpOnly; SameSite=Strict"
+        return f"{self.cookie}={self.cookie_value}; Path=/; HttpOnly; SameSite=Strict"
 
     def serves(self, host: str, reached: str) -> bool:
         """Whether a Host header names this machine.
@@ -56,6 +61,10 @@ class Access:
         """
         name = host_name(host)
         return bool(name) and (name in self.names or name == _address(reached))
+
+
+def _is_equal(wanted: str, given: str) -> bool:
+    return hmac.compare_digest(wanted.encode(), given.encode("utf-8", "replace"))
 
 
 def host_name(host: str) -> str:
@@ -98,7 +107,7 @@ def shown_host(address: str, environment: Mapping[str, str]) -> str:
         return f"[{address}]" if ":" in address else address
     named = environment.get("ROS_IP") or environment.get("ROS_HOSTNAME")
     if named and named != "localhost" and not named.startswith("127."):
-        return named
+        return f"[{named}]" if ":" in named else named
     return _route() or "127.0.0.1"
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from tornado.web import HTTPError, RequestHandler
 
-from pytpc.present.live.assets import Asset, assets, page, qr_svg
+from pytpc.present.live.assets import Asset, assets, page
 
 if TYPE_CHECKING:
     from pytpc.serve.server import LiveServer
@@ -102,13 +102,3 @@ class AssetHandler(CheckedHandler):
         # The browser asks whether it has changed: the script of Bokeh is large.
         self.set_header("Cache-Control", "no-cache")
         self.answer(asset)
-
-
-class QrHandler(CheckedHandler):
-    """The address with the token as a QR code, for a phone."""
-
-    def get(self) -> None:
-        """The picture."""
-        if not self.server.phone_url:
-            raise HTTPError(404)
-        self.answer(Asset(qr_svg(self.server.phone_url), "image/svg+xml"))

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import math
 from collections import OrderedDict
 from typing import TYPE_CHECKING, Any, cast
 
+from tornado.iostream import IOStream
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from pytpc.base.errors import TpcError
+from pytpc.present.live.assets import qr_svg
 from pytpc.serve.access import is_same_origin
 from pytpc.serve.board_changes import Board, changes, is_news
 from pytpc.serve.handlers import CheckedHandler
@@ -25,8 +28,10 @@ _LONGEST_ID = 64
 _KEPT_ANSWERS = 256
 _TIME_EACH = 10
 """A page is told the time with each so-many-th board, even if nothing else is new."""
-TOO_MANY, BAD = 4008, 4002
-"""Why a socket is closed: there are too many pages; it sent what no page of ours sends."""
+TOO_MANY, NO_TOKEN, BAD = 4008, 4003, 4002
+"""Why a socket is closed: there are too many pages; it has no token; it sent what no page of ours
+sends."""
+NEEDS_TOKEN = "this page needs the token: open the whole address that pytpc live printed"
 MARKS = frozenset({"1", "2", "3", "undo", "note", "where", "began"})
 PLAYS = frozenset({"play", "pause", "seek", "step", "speed", "faster"})
 
@@ -52,12 +57,13 @@ class PageSocket(CheckedHandler, WebSocketHandler):
         """Nothing is sent yet."""
         super().initialize(server)
         self.observer: str | None = None
-        self.key: str | None = None
+        self.opened: tuple[str, str] | None = None
         self._rate = Rate()
         self._refused = 0
         self._sent: tuple[int, Board] | None = None
         self._on_the_way = 0
         self._line: Board | None = None
+        self._tasks: set[asyncio.Future[None]] = set()
 
     def check_origin(self, origin: str) -> bool:
         """Only the page itself may open it."""
@@ -75,17 +81,26 @@ class PageSocket(CheckedHandler, WebSocketHandler):
         """It is gone."""
         self.server.pages.discard(self)
 
-    def send(self, message: Message) -> None:
-        """Send a message, unless the page is gone."""
+    async def send(self, message: Message) -> None:
+        """Send a message, unless the page is gone; wait until it has been taken."""
         try:
-            # What is on its way is bounded: a page confirms its boards, and asks at a limited rate.
-            self.write_message(json.dumps(message, allow_nan=False))
+            await self.write_message(json.dumps(message, allow_nan=False))
         except WebSocketClosedError:
             self.server.pages.discard(self)
 
+    @property
+    def _takes_more(self) -> bool:
+        """Whether it has taken what was sent, and confirmed most of its boards.
+
+        A page that confirms and does not read would otherwise fill the memory.
+        """
+        stream = getattr(self.ws_connection, "stream", None)
+        is_writing = isinstance(stream, IOStream) and stream.writing()
+        return not is_writing and self._on_the_way < BOARDS_ON_THE_WAY
+
     def offer(self, number: int, board: Board) -> None:
         """Send what is new, unless the page has not confirmed the boards before."""
-        if self.observer is None or self._on_the_way >= BOARDS_ON_THE_WAY:
+        if self.observer is None or not self._takes_more:
             return
         last = self._sent[0] if self._sent is not None else 0
         found = changes(self._sent[1] if self._sent is not None else None, board)
@@ -93,13 +108,19 @@ class PageSocket(CheckedHandler, WebSocketHandler):
             return
         self._sent = number, board
         self._on_the_way += 1
-        self.send({"board": number, "changes": found})
+        self._tell({"board": number, "changes": found})
 
     def offer_line(self, key: str, line: Board) -> None:
         """Send the last values of the comparison that it looks at, if it takes what is sent."""
-        if self._on_the_way < BOARDS_ON_THE_WAY and self._line != line:
+        if self._takes_more and self._line != line:
             self._line = line
-            self.send({"line": line, "key": key})
+            self._tell({"line": line, "key": key})
+
+    def _tell(self, message: Message) -> None:
+        """Send a message, and do not wait."""
+        task = asyncio.ensure_future(self.send(message))
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
 
     async def on_message(self, message: str | bytes) -> None:
         """Do what the page asks; the next message waits until it is done."""
@@ -108,8 +129,9 @@ class PageSocket(CheckedHandler, WebSocketHandler):
         except BadMessageError as error:
             self.close(BAD, str(error))
             return
-        if asked["do"] == "seen":
-            self._on_the_way = max(0, self._on_the_way - 1)
+        is_seen = asked["do"] == "seen"
+        if is_seen and self._on_the_way > 0:
+            self._on_the_way -= 1
             return
         ident = asked["id"]
         if not self._rate.take():
@@ -118,14 +140,18 @@ class PageSocket(CheckedHandler, WebSocketHandler):
                 self.close(BAD, "too many messages")
                 return
             said = "refused: too many at a time; wait a moment"
-            self.send({"done": ident, "ok": False, "refused": True, "said": said})
+            await self.send({"done": ident, "ok": False, "refused": True, "said": said})
+            return
+        if is_seen:
+            # A board of before the last hello.
             return
         try:
             answer = await self._answer(asked)
         except BadMessageError as error:
             self.close(BAD, str(error))
             return
-        self.send({"done": ident, **answer})
+        # The next message is not read before the answer is taken.
+        await self.send({"done": ident, **answer})
 
     async def _answer(self, asked: Message) -> Message:
         if asked["do"] == "hello":
@@ -141,6 +167,9 @@ class PageSocket(CheckedHandler, WebSocketHandler):
         return answer
 
     async def _hello(self, asked: Message) -> Message:
+        if self.observer is None and not self.server.access.knows(_text(asked, "token", 100)):
+            self.close(NO_TOKEN, NEEDS_TOKEN)
+            return {"ok": False, "said": NEEDS_TOKEN}
         wanted = _text(asked, "observer", 60) if asked.get("observer") is not None else None
         name, answer = await self.server.join(self, wanted)
         if answer.ok:
@@ -161,19 +190,27 @@ class PageSocket(CheckedHandler, WebSocketHandler):
         if what in PLAYS:
             to = _number(asked, "to") if "to" in asked else 0.0
             return (await server.play(what, to))._asdict()
-        if what == "open":
-            self.key = _text(asked, "key", 100)
-            detail = await server.detail(self.key)
-            if detail is None:
-                self.key = None
-                return {"ok": False, "said": "this comparison is not known any more"}
-            return {"ok": True, "said": "", "detail": detail}
-        if what == "close":
-            self.key = None
-            return {"ok": True, "said": ""}
+        if what in ("open", "close"):
+            return await self._look(asked)
+        if what == "phone":
+            code = qr_svg(server.phone_url).decode() if server.phone_url else ""
+            return {"ok": bool(code), "said": "", "code": code}
         if what in ("plan", "apply"):
             return await self._change(asked)
         raise BadMessageError("nothing is called that")
+
+    async def _look(self, asked: Message) -> Message:
+        """Open a comparison, or close the one that is open."""
+        self.opened = None
+        if asked["do"] == "close":
+            return {"ok": True, "said": ""}
+        key = _text(asked, "key", 100)
+        node = _text(asked, "node", 300) if "node" in asked else ""
+        detail = await self.server.detail(key, node)
+        if detail is None:
+            return {"ok": False, "said": "this comparison is not known any more"}
+        self.opened = key, node
+        return {"ok": True, "said": "", "detail": detail}
 
     async def _change(self, asked: Message) -> Message:
         """Plan or make a change of a value."""

@@ -30,14 +30,16 @@ from pytpc.api.live_observers import Answer, free_name
 from pytpc.api.live_values import LiveValues, Planned
 from pytpc.base.errors import RunError
 from pytpc.recording.marks import is_observer
-from pytpc.serve.access import Access, is_private, names_of, shown_host
-from pytpc.serve.handlers import AssetHandler, PageHandler, QrHandler
+from pytpc.serve.access import Access, host_name, is_private, names_of, shown_host
+from pytpc.serve.handlers import AssetHandler, PageHandler
 from pytpc.serve.limits import LONGEST_MESSAGE
 from pytpc.serve.pages import Answers, PageSocket
 
 Done = TypeVar("Done")
 
 _EACH_S = 0.1
+_PATIENCE_S = 0.5
+"""So long a jump in a recording is read before the pages are told how much of it is left."""
 _LINE_EACH = 5
 """The open comparison's line is sent with each so-many-th board."""
 _MOST_CONNECTIONS = 200
@@ -79,7 +81,9 @@ class LiveServer:
         self._options = options
         self._socket = _bound(options.host, options.port)
         self.port: int = self._socket.getsockname()[1]
-        self.access = Access(names_of(options.host))
+        # The printed address is served, whatever name ROS has for this machine.
+        shown = host_name(shown_host(options.host, os.environ))
+        self.access = Access(names_of(options.host) | {shown})
         self.pages: set[PageSocket] = set()
         self.answers: dict[str, Answers] = {}
         self._thread = ThreadPoolExecutor(1, "board")
@@ -115,7 +119,6 @@ class LiveServer:
             [
                 (r"/", PageHandler, handled),
                 (r"/assets/([a-z.-]{1,40})", AssetHandler, handled),
-                (r"/qr.svg", QrHandler, handled),
                 (r"/socket", PageSocket, handled),
             ],
             default_handler_class=_NothingHere,
@@ -150,7 +153,7 @@ class LiveServer:
         while not self._stopped.is_set():
             began = time.monotonic()
             number += 1
-            await self._on_board(self._board.tick)
+            await self._on_board(partial(self._board.tick, _PATIENCE_S))
             if self.pages:
                 self._newest = number, await self._on_board(self._board.board)
                 for page in list(self.pages):
@@ -163,11 +166,11 @@ class LiveServer:
 
     async def _send_lines(self) -> None:
         """Send the last values of the comparisons that pages look at."""
-        for key in {page.key for page in self.pages if page.key is not None}:
-            line = await self._on_board(partial(self._board.line, key))
+        for opened in {page.opened for page in self.pages if page.opened is not None}:
+            line = await self._on_board(partial(self._board.line, *opened))
             for page in list(self.pages):
-                if page.key == key:
-                    page.offer_line(key, line)
+                if page.opened == opened:
+                    page.offer_line(opened[0], line)
 
     async def _on_board(self, ask: Callable[[], Done]) -> Done:
         return await asyncio.get_running_loop().run_in_executor(self._thread, ask)
@@ -216,9 +219,9 @@ class LiveServer:
         """Move the clock of a recording."""
         return await self._on_board(lambda: self._board.play(what, to))
 
-    async def detail(self, key: str) -> Board | None:
-        """All about a comparison."""
-        return await self._on_board(lambda: self._board.detail(key))
+    async def detail(self, key: str, node: str) -> Board | None:
+        """All about a comparison in a node."""
+        return await self._on_board(lambda: self._board.detail(key, node))
 
     async def plan(self, parameter: str, value: str) -> Planned:
         """Plan a change of a value.
@@ -271,8 +274,12 @@ def _bound(host: str, port: int) -> socket.socket:
         RunError: nobody can listen there.
     """
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    # At all addresses means those of IPv4, too: one of them is printed.
+    both = host == "::" and socket.has_dualstack_ipv6()
     try:
-        found = socket.create_server((host, port), family=family, backlog=_BACKLOG)
+        found = socket.create_server(
+            (host, port), family=family, backlog=_BACKLOG, dualstack_ipv6=both
+        )
     except socket.gaierror as error:
         raise RunError(f"--host {host}: no address of this machine has this name") from error
     except OSError as error:

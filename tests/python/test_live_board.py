@@ -61,6 +61,45 @@ def test_the_nearest_comes_first(board: LiveBoard):
     assert near[0]["members"] == []
 
 
+# Two nodes run one program: /a is 0.5 below the limit of 10, /b 6; the range is 0 to 10.
+def test_nodes_of_one_comparison_have_rows_and_lines_of_their_own(tmp_path: Path):
+    rows = [
+        row
+        for t in range(10)
+        for row in [
+            (t, 0, False, 9.5 if t else 0, 10, "/a"),
+            (t + 0.5, 0, False, 4, 10, "/b"),
+        ]
+    ]
+    both = Recording("two", events(rows), (), 0, ns(10))
+    board = board_of(tmp_path, static_info(comparison(0, "~limit")), both)
+    near = at(board, 10)["near"]
+    assert [(row["node"], row["share"], row["value"]) for row in near] == [
+        ("/a", 0.05, "9.5"),
+        ("/b", 0.6, "4"),
+    ]
+    assert all(row["shared"] for row in near)
+    assert len({row["id"] for row in near}) == 2
+    assert set(board.line(key(0), "/b")["value"]) == {4.0}
+    assert board.line(key(0), "/nobody") == board.line(key(0), "/b")
+
+
+# A jump is read in parts: the page can be told how much is left, and keeps its board meanwhile.
+def test_a_jump_that_takes_long_is_told(tmp_path: Path):
+    board = board_of(tmp_path, *mission(seconds=100))
+    before = at(board, 1)
+    board.play("seek", 100.0)
+    board.tick(0.0)
+    shown = board.board()
+    assert shown["state"]["behind"] == 69.0
+    assert shown["clock"]["now"] == 100.0
+    assert shown["near"] == before["near"]
+    for _ in range(3):
+        board.tick(0.0)
+    assert board.board()["state"]["behind"] == 0
+    assert board.board()["near"][0]["value"] == "9.5"
+
+
 # At 36 s, ~turns has had its result for 1 s; the others since the first report, at 0.
 def test_what_has_not_turned_for_a_window_is_held(board: LiveBoard):
     shown = at(board, 36)

@@ -373,6 +373,13 @@ def test_the_groups_of_a_running_mission():
     assert groups.groups(ns(901), str) == ()
 
 
+# Of 1,000 comparisons that turn alike (half a million pairs), those that turned last are compared.
+def test_only_so_many_are_compared_while_it_runs():
+    pairs = [(f"{n}", t + 0.001 * n) for n in range(1000) for t in range(5, 200, 20)]
+    _, (found,) = live(pairs, 200)
+    assert {one.key for one in found.members} == {f"{n}" for n in range(900, 1000)}
+
+
 def test_noise_at_a_threshold_is_one_turn_while_it_runs():
     noisy = [(name, 5 + 0.2 * n) for n in range(50) for name in ("a", "b")]
     # From 5 to 14.8 s they turn each 0.2 s: one turn, and one says nothing.

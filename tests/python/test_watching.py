@@ -407,6 +407,45 @@ def test_going_back_in_a_recording_is_never_having_been_further():
     assert look_after(35, 80, 0, 70, 30, 119) == there[2]
 
 
+# 6,000 s: after a jump to the end, one step back reads a stretch between two copies again.
+def test_a_jump_leaves_copies_on_its_way():
+    recording = Recording("m", events([(t, 0, False, 1, 3) for t in range(6000)]), (), 0, 6000 * S)
+    feed = RecordedFeed(recording, watching())
+    while (stop := feed.stop(6000 * S)) != 6000 * S:
+        feed.take(stop)
+    assert len(feed.take(6000 * S)[1]) <= 31
+    assert 1 < len(feed._copies) <= 64
+    # 64 copies of each half a minute are full at 1,920 s: twice as far apart they reach 3,840 s.
+    assert len(feed.take(5990 * S)[1]) <= 121
+
+
+# However many reports have one time, the way goes on.
+def test_many_reports_of_one_instant_are_taken_at_once():
+    rows = [(t, 0, False, 1, 3) for t in (1, 2) for _ in range(25_000)]
+    feed = RecordedFeed(Recording("m", events(rows), (), 0, 3 * S), watching())
+    counts = []
+    while True:
+        stop = feed.stop(3 * S)
+        counts.append(len(feed.take(stop)[1]))
+        if stop == 3 * S:
+            break
+    assert counts[:2] == [25_000, 25_000]
+    assert sum(counts) == 50_000
+
+
+# The lines of two minutes and more of 2,000 comparisons are not kept 64 times.
+def test_copies_share_the_lines():
+    found = watching(*(seen(t, 0, 1, 3) for t in range(100)))
+    times, *_ = found.line_of(key(0), "/a")
+    other = found.snapshot()
+    assert other.line_of(key(0), "/a")[0] == times == list(range(100))
+    line, copied = (one._tracks[key(0)].lines["/a"] for one in (found, other))
+    assert len(line.full) == 1
+    assert line.full[0] is copied.full[0]
+    found.take(seen(100, 0, 1, 3))
+    assert other.line_of(key(0), "/a")[0] == times
+
+
 class Feeding(GraphFeed):
     """A feed of a graph that is not there; what came is put into it."""
 

@@ -6,8 +6,10 @@ the score of type II (D in docs/reference/scores.md), of the last evaluation alo
 
 from __future__ import annotations
 
+import heapq
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
+from typing import TypeVar
 
 from pytpc.diagnosis.question import WINDOW_S
 from pytpc.diagnosis.ranking.watching import Watching
@@ -20,9 +22,17 @@ RECENT_S = 20.0
 """A comparison that was reported within this time is shown: one about which nothing is new may send
 no summary for 16 s (docs/reference/runtime.md#light)."""
 
+_Key = TypeVar("_Key", bound=Hashable)
 _NEARER = 0.8
 _NEARER_BY = 0.001
 """A row moves up only past one that is so much farther, so that rows do not jump."""
+
+_ORDERED = 4
+"""So many times as many rows are ordered as are shown."""
+
+
+_Place = tuple[str, str]
+"""A comparison in a node: its key, and the node."""
 
 
 class Turning:
@@ -35,17 +45,18 @@ class Turning:
     def __init__(self, window_s: float = WINDOW_S) -> None:
         """Nothing is known."""
         self._window_ns = round(window_s * 1e9)
-        self._near: list[str] = []
-        self._held: list[str] = []
-        self._margins: dict[str, tuple[float, float, tuple[float, bool]]] = {}
+        self._near: list[_Place] = []
+        self._held: list[_Place] = []
+        self._margins: dict[_Place, tuple[float, float, tuple[float, bool]]] = {}
 
     def look(self, watching: Watching, now_ns: int, most: int) -> TurningLook:
         """The first ``most`` of each list at an instant."""
         static = watching.static_info
-        found = {one.last.key: one for one in watching.compared(now_ns, RECENT_S)}
-        shares = {key: share_of(one, static.unit_of(key)) for key, one in found.items()}
+        compared = watching.compared(now_ns, RECENT_S)
+        found = {(one.last.key, one.last.node): one for one in compared}
+        shares = {place: share_of(one, static.unit_of(place[0])) for place, one in found.items()}
         near = {key: share for key, share in shares.items() if share is not None}
-        self._near = steady_order(self._near, near)
+        self._near = steady_order(self._near, _lowest(near, most))
         # What has no margin is last: the nearest to its exposing statement first.
         held = {
             key: 1.0 + one.comparison.distance
@@ -54,9 +65,9 @@ class Turning:
             for key, one in found.items()
             if now_ns - one.since_ns >= self._window_ns
         }
-        self._held = steady_order(self._held, held)
+        self._held = steady_order(self._held, _lowest(held, most))
 
-        def rows(keys: Sequence[str]) -> list[NearRow]:
+        def rows(keys: Sequence[_Place]) -> list[NearRow]:
             return [self._row(found[key], shares[key], static) for key in keys[:most]]
 
         turns = tuple(watching.turns)[::-1][:most]
@@ -66,11 +77,20 @@ class Turning:
         if share is None:
             return NearRow(one, None, None, False)
         cmp, thresh = one.last.cmp, one.last.thresh
-        kept = self._margins.get(one.last.key)
+        place = one.last.key, one.last.node
+        kept = self._margins.get(place)
         if kept is None or kept[:2] != (cmp, thresh):
             margin = margin_of(one.comparison, static.unit_of(one.last.key), cmp, thresh)
-            kept = self._margins[one.last.key] = (cmp, thresh, margin)
+            kept = self._margins[place] = (cmp, thresh, margin)
         return NearRow(one, share, *kept[2])
+
+
+def _lowest(values: Mapping[_Place, float], most: int) -> dict[_Place, float]:
+    """Those that may be among the first ``most`` rows: to order thousands takes too long."""
+    if len(values) <= _ORDERED * most:
+        return dict(values)
+    found = heapq.nsmallest(_ORDERED * most, values, key=lambda place: (values[place], place))
+    return {place: values[place] for place in found}
 
 
 def share_of(one: Compared, unit: LinkUnit) -> float | None:
@@ -101,7 +121,7 @@ def margin_of(
     return abs(then - now), True
 
 
-def steady_order(before: Sequence[str], values: Mapping[str, float]) -> list[str]:
+def steady_order(before: Sequence[_Key], values: Mapping[_Key, float]) -> list[_Key]:
     """The keys by ascending values, but as before where the values hardly differ.
 
     A key is put before the first one that is clearly larger. So no key stands behind one that is
@@ -112,8 +132,9 @@ def steady_order(before: Sequence[str], values: Mapping[str, float]) -> list[str
     """
     known = [key for key in before if key in values]
     here = set(known)
-    new = sorted((key for key in values if key not in here), key=lambda key: (values[key], key))
-    order: list[str] = []
+    unknown = (key for key in values if key not in here)
+    new = sorted(unknown, key=lambda key: (values[key], str(key)))
+    order: list[_Key] = []
     for key in [*known, *new]:
         limit = values[key]
         place = next(

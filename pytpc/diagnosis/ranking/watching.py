@@ -33,7 +33,7 @@ BINS = 8
 """The number of parts of the window that are shown of each comparison."""
 
 _MOST_TURNS = 50
-_LINE_POINTS = 480
+_LINE_PART, _LINE_PARTS = 60, 8
 _LINE_STEP_S = 0.25
 """At least so far apart are the kept values of a comparison: two minutes, or more of summaries."""
 
@@ -54,6 +54,35 @@ class _Bin:
 
 
 @dataclass(slots=True)
+class _Line:
+    """The last values as time (s), cmp, thresh, one after the other.
+
+    What is full never changes, so that all copies of a mission share it.
+    """
+
+    full: tuple[bytes, ...] = ()
+    rest: array[float] = field(default_factory=lambda: array("d"))
+    until_s: float = -math.inf
+
+    def draw(self, seen: Seen) -> None:
+        """Keep the values, unless the last ones are just before."""
+        seconds = seen.time_ns / 1e9
+        if seconds < self.until_s + _LINE_STEP_S:
+            return
+        self.until_s = seconds
+        self.rest.extend((seconds, seen.cmp, seen.thresh))
+        if len(self.rest) >= 3 * _LINE_PART:
+            self.full = (*self.full, self.rest.tobytes())[-_LINE_PARTS:]
+            self.rest = array("d")
+
+    def values(self) -> array[float]:
+        """All that is kept."""
+        found = array("d")
+        found.frombytes(b"".join(self.full))
+        return found + self.rest
+
+
+@dataclass(slots=True)
 class _Track:
     """What is kept of one comparison, however long the mission is."""
 
@@ -65,17 +94,21 @@ class _Track:
     bins: dict[int, _Bin] = field(default_factory=dict)
     since: dict[str, tuple[int, bool]] = field(default_factory=dict)
     """By node: since when it has had its present result."""
-    line: array[float] = field(default_factory=lambda: array("d"))
-    """The last values as time (s), cmp, thresh, one after the other: flat, as copies are cheap."""
+    lasts: dict[str, Seen] = field(default_factory=dict)
+    """By node: its last evaluation."""
+    lines: dict[str, _Line] = field(default_factory=dict)
+    """By node: its last values."""
 
     def draw(self, seen: Seen) -> None:
-        """Keep the values for a line, unless the last ones are just before."""
-        seconds = seen.time_ns / 1e9
-        if self.line and not self.line[-3] + _LINE_STEP_S <= seconds:
+        """Keep what is shown of its node."""
+        known = self.lasts.get(seen.node)
+        if known is not None and known.time_ns > seen.time_ns:
             return
-        self.line.extend((seconds, seen.cmp, seen.thresh))
-        if len(self.line) > 6 * _LINE_POINTS:
-            del self.line[: 3 * _LINE_POINTS]
+        self.lasts[seen.node] = seen
+        line = self.lines.get(seen.node)
+        if line is None:
+            line = self.lines[seen.node] = _Line()
+        line.draw(seen)
 
 
 class Watching:
@@ -146,9 +179,9 @@ class Watching:
             track.results[seen.node] = seen.time_ns, seen.result
             if before is None or before[1] != seen.result:
                 track.since[seen.node] = seen.time_ns, seen.result
+        track.draw(seen)
         if track.last is None or track.last.time_ns <= seen.time_ns:
             track.last = seen
-            track.draw(seen)
         difference = abs(seen.cmp - seen.thresh)
         if math.isfinite(difference):
             part.total += difference
@@ -166,10 +199,11 @@ class Watching:
     def _add_summary(self, summary: Summary) -> None:
         self._engine.scores.add_summary(summary)
         track = self._tracks.setdefault(summary.key, _Track())
+        values = summary.result, summary.cmp, summary.thresh, summary.res
+        last = Seen(summary.end_ns, summary.key, summary.node, *values)
+        track.draw(last)
         if track.last is None or track.last.time_ns <= summary.end_ns:
-            values = summary.result, summary.cmp, summary.thresh, summary.res
-            track.last = Seen(summary.end_ns, summary.key, summary.node, *values)
-            track.draw(track.last)
+            track.last = last
         self._note_result(track, summary)
         finite = summary.count - summary.odd
         if finite and math.isfinite(summary.abs_mean):
@@ -273,30 +307,28 @@ class Watching:
         )
 
     def compared(self, now_ns: int, recent_s: float) -> list[Compared]:
-        """The comparisons with parameters that were evaluated within the last ``recent_s``."""
+        """The comparisons with parameters that were evaluated within the last ``recent_s``.
+
+        One that runs in several nodes is there once for each.
+        """
         if self._has_new_names or self._waiting:
             self._learn()
         earliest = now_ns - round(recent_s * 1e9)
         found = []
         for key, track in self._tracks.items():
             comparison = self._known.get(key)
-            last = track.last
-            if comparison is None or comparison.type == "constant" or last is None:
+            if comparison is None or comparison.type == "constant":
                 continue
-            if last.time_ns < earliest:
+            recent = [last for last in track.lasts.values() if last.time_ns >= earliest]
+            if not recent:
                 continue
-            since_ns, _ = track.since.get(last.node, (last.time_ns, last.result))
             spread = track.high - track.low
-            found.append(
-                Compared(
-                    comparison,
-                    parameter_name(comparison),
-                    last,
-                    since_ns,
-                    spread if spread > 0 else 0.0,
-                    self._parts(track, now_ns),
-                )
-            )
+            parts = self._parts(track, now_ns)
+            name = parameter_name(comparison)
+            for last in recent:
+                since_ns, _ = track.since.get(last.node, (last.time_ns, last.result))
+                whole = spread if spread > 0 else 0.0
+                found.append(Compared(comparison, name, last, since_ns, whole, parts))
         return found
 
     def groups(self, now_ns: int) -> tuple[TurnGroup, ...]:
@@ -308,10 +340,17 @@ class Watching:
 
         return self._groups.groups(now_ns, name_of)
 
-    def line_of(self, key: str) -> tuple[list[float], list[float], list[float]]:
-        """The last values of a comparison: times (s), compared values and thresholds."""
-        line = self._tracks[key].line if key in self._tracks else array("d")
-        return line[::3].tolist(), line[1::3].tolist(), line[2::3].tolist()
+    def line_of(self, key: str, node: str) -> tuple[list[float], list[float], list[float]]:
+        """The last values of a comparison: times (s), compared values, thresholds.
+
+        Those in ``node``; if it has none, in the node that was the last to report.
+        """
+        track = self._tracks.get(key)
+        line = None
+        if track is not None and track.last is not None:
+            line = track.lines.get(node, track.lines.get(track.last.node))
+        values = array("d") if line is None else line.values()
+        return values[::3].tolist(), values[1::3].tolist(), values[2::3].tolist()
 
     def snapshot(self) -> Watching:
         """An independent copy, which shares what the analysis found."""

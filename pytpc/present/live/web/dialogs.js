@@ -63,9 +63,9 @@ export const showHelp = (isRecording) => {
   open(dialog("help"));
 };
 
-export const showPhone = () => {
+export const showPhone = (svg) => {
   const found = dialog("phone");
-  found.querySelector("img").src = "/qr.svg";
+  found.querySelector("img").src = `data:image/svg+xml,${encodeURIComponent(svg)}`;
   open(found);
 };
 
@@ -96,10 +96,11 @@ export class Detail {
     return document.querySelector("#change input");
   }
 
-  async show(key, mayChange) {
-    const answer = await this.ask({ do: "open", key });
+  async show(key, node, mayChange) {
+    const answer = await this.ask({ do: "open", key, node });
     if (!answer || !answer.ok) return answer ? answer.said : "not connected";
     this.key = key;
+    this.node = node;
     this.detail = answer.detail;
     this.fill(answer.detail);
     document.getElementById("change").hidden = !mayChange;
@@ -129,7 +130,7 @@ export class Detail {
 
   // The connection is back: the server does not know any more what was looked at.
   again() {
-    if (this.key !== null) this.ask({ do: "open", key: this.key });
+    if (this.key !== null) this.ask({ do: "open", key: this.key, node: this.node });
   }
 
   line(key, line) {

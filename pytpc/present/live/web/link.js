@@ -7,8 +7,9 @@ const AGAIN = 1200;
 
 export class Link {
   // `on` has the functions hello, board, line and state; state gets "open", "lost" or "refused".
-  constructor(on, observer) {
+  constructor(on, observer, token) {
     this.on = on;
+    this.token = token;
     this.observer = observer;
     this.ready = false;
     this.asked = new Map();
@@ -68,7 +69,7 @@ export class Link {
   }
 
   async greet(socket) {
-    const answer = await this.ask({ do: "hello", observer: this.observer });
+    const answer = await this.ask({ do: "hello", observer: this.observer, token: this.token });
     if (socket !== this.socket || answer === null) return;
     if (!answer.ok && this.observer !== null) {
       // A name that was kept from an earlier time, and that cannot be used now.

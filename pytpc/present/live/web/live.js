@@ -7,7 +7,10 @@ const NEWS_EACH = 10_000;
 const NAME = "tpc-observer";
 const byId = (id) => document.getElementById(id);
 
-// The token is in a cookie now: it need not stay where it is seen and copied.
+const TOKEN = "tpc-token";
+// The token need not stay where it is seen and copied. It is kept where only this very server's
+// pages find it: cookies go to every port of a host.
+const given = new URLSearchParams(location.search).get("token");
 history.replaceState(null, "", "/");
 
 const board = { near: [], held: [], turns: [], marks: [], places: [], suspects: [] };
@@ -22,20 +25,21 @@ let ended = false;
 let toldTurns = null;
 let toldAt = 0;
 
-const remembered = () => {
+const remembered = (what) => {
   try {
-    return localStorage.getItem(NAME);
+    return localStorage.getItem(what);
   } catch {
     return null; // storage is switched off
   }
 };
-const remember = (name) => {
+const remember = (what, text) => {
   try {
-    localStorage.setItem(NAME, name);
+    localStorage.setItem(what, text);
   } catch {
     // It is asked for again next time.
   }
 };
+if (given) remember(TOKEN, given);
 
 const missionNow = () => {
   const now = clock.now + (clock.rate * (Date.now() - clockAt)) / 1000;
@@ -110,12 +114,14 @@ const showBanner = () => {
     text = state.unsaved;
   } else if (state.gone_since) {
     text = `The graph does not answer since ${since(state.gone_since * 1000)}; waiting for it.`;
+  } else if (state.behind) {
+    text = `Reading the recording up to here: ${Math.ceil(state.behind)} s of it are left.`;
   } else if (state.live && state.quiet_since) {
     text = `No report since ${since(state.quiet_since * 1000)}.`;
   }
   put(byId("banner"), text);
   byId("banner").hidden = text === "";
-  const old = ended || (link !== null && link.lostSince !== null) || (state.gone_since && state.quiet_since);
+  const old = ended || (link !== null && link.lostSince !== null) || (state.gone_since && state.quiet_since) || state.behind > 0;
   byId("board").classList.toggle("old", Boolean(old));
 };
 
@@ -218,7 +224,10 @@ for (const button of document.querySelectorAll("[data-close]")) {
   button.addEventListener("click", () => button.closest("dialog").close());
 }
 byId("to-help").addEventListener("click", () => showHelp(hello.recording));
-byId("to-phone").addEventListener("click", showPhone);
+byId("to-phone").addEventListener("click", async () => {
+  const answer = await link.ask({ do: "phone" });
+  if (answer && answer.ok) showPhone(answer.code);
+});
 byId("play").addEventListener("click", playOrPause);
 for (const button of document.querySelectorAll("[data-step]")) {
   button.addEventListener("click", () => player("step", Number(button.dataset.step)));
@@ -236,7 +245,7 @@ byId("who").addEventListener("click", async () => {
   const name = await askName(hello.observer);
   if (name === null || name.trim() === hello.observer) return;
   const answer = await link.rename(name.trim());
-  if (answer && answer.ok) remember(name.trim());
+  if (answer && answer.ok) remember(NAME, name.trim());
   say(answer ? answer.said || `You mark as ${name.trim()} now.` : "not connected", !(answer && answer.ok));
 });
 
@@ -244,7 +253,7 @@ const detail = new Detail((message) => link.ask(message));
 document.addEventListener("click", async (event) => {
   const row = event.target.closest("button[data-key]");
   if (row === null) return;
-  const wrong = await detail.show(row.dataset.key, hello.apply);
+  const wrong = await detail.show(row.dataset.key, row.dataset.node, hello.apply);
   if (wrong) say(wrong, true);
 });
 
@@ -257,8 +266,8 @@ link = new Link(
   {
     hello: (found) => {
       hello = found;
-      if (remembered() === null) remember(found.observer);
-      put(byId("who"), found.observer);
+      if (remembered(NAME) === null) remember(NAME, found.observer);
+      put(byId("who"), found.observer || "no name");
       byId("who").setAttribute("aria-label", `Observer ${found.observer}: change the name`);
       byId("player").hidden = !found.recording;
       byId("to-phone").hidden = !found.phone;
@@ -273,7 +282,8 @@ link = new Link(
       showBanner();
     },
   },
-  remembered(),
+  remembered(NAME),
+  given || remembered(TOKEN) || "",
 );
 setInterval(() => {
   pass();

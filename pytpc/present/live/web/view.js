@@ -94,7 +94,7 @@ const withText = (row) => (row.members.length ? `with ${row.members.join(", ")}:
 
 const fillNear = (item, row) => {
   const { name, now, text, trend: svg, code, file } = item.parts;
-  put(name, row.parameter);
+  put(name, row.shared ? `${row.parameter} in ${row.node}` : row.parameter);
   put(now, nowText(row));
   put(text, marginText(row));
   text.title = row.in_unit ? "by so much the parameter would have to change" : "* difference of the compared values";
@@ -102,6 +102,7 @@ const fillNear = (item, row) => {
   put(code, withText(row));
   put(file, ` · ${fileOf(row)}`);
   item.row.dataset.key = row.key;
+  item.row.dataset.node = row.node;
   item.classList.toggle("near-it", row.share !== null && row.share < NEAR);
 };
 const ageNear = (item, row, now) => {
@@ -123,6 +124,7 @@ const fillTurn = (item, row) => {
   margin.hidden = true;
   put(code, `${fileOf(row)}  ${row.code}`);
   item.row.dataset.key = row.key;
+  item.row.dataset.node = row.node;
 };
 const ageTurn = (item, row, now) =>
   put(item.parts.what, `${spanText(now - row.at)} ago${row.topic ? ` · ${row.topic}` : ""}`);
@@ -144,6 +146,7 @@ const fillSuspect = (item, row) => {
   if (!item.parts.others) item.row.append((item.parts.others = make("span", "code")));
   put(item.parts.others, withText(row));
   item.row.dataset.key = row.key;
+  item.row.dataset.node = row.node;
 };
 const ageSuspect = (item, row, now) =>
   put(item.parts.what, row.flop === null ? "never turned" : `turned ${spanText(now - row.flop)} ago`);
