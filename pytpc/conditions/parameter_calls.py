@@ -33,6 +33,9 @@ _SAYS = re.compile(r"WARN|ERROR|\blog|print|cerr|cout|warn|INFO")
 _CPP_LOOP = re.compile(r"\b(?:while|for|do)\b|\]\s*\(|\]\s*\{")
 _CPP_START = frozenset({"main", "onInit"})
 _PYTHON_START = frozenset({"main", "__init__", "<module>", ""})
+# In a descriptor of ROS 2: the node takes values of all types.
+_ANY_TYPE = "dynamic_typing"
+_CONVERSIONS = frozenset({"int", "float", "str", "bool", "array", "literal_eval"})
 _REPORTED_WITHIN = 6
 _NEAR = 4
 _LONGEST_BLOCK = 10
@@ -41,11 +44,16 @@ _FARTHEST = 400
 
 @dataclass(frozen=True, slots=True)
 class CallText:
-    """What the source says beside a call; ``deprecation`` is the number of a line."""
+    """What the source says beside a call.
+
+    ``deprecation`` is the number of a line. ``is_converted`` says that the code makes a number, a
+    text or a flag of the value, of whatever type it is.
+    """
 
     needed: Needed = ""
     deprecation: int | None = None
     at_start: bool = False
+    is_converted: bool = False
 
 
 NOTHING = CallText()
@@ -69,7 +77,10 @@ def call_text(path: str, lineno: int, api: str, function: str) -> CallText:
         return NOTHING
     at = lineno - 1
     return CallText(
-        _needed(lines, at, api), _deprecation(lines, at), _at_start(lines, at, function)
+        _needed(lines, at, api),
+        _deprecation(lines, at),
+        _at_start(lines, at, function),
+        any(_ANY_TYPE in line for line in lines),
     )
 
 
@@ -213,7 +224,12 @@ def _of_python(source: _Python, lineno: int, api: str) -> CallText:
     call = found[0]
     above = list(source.above(call))
     needed: Needed = "fails" if _is_needed(source, call, above, last) else ""
-    return CallText(needed, _python_deprecation(source, call, above), _python_start(above))
+    outer = above[0] if above else None
+    is_converted = isinstance(outer, ast.Call) and _called(outer) in _CONVERSIONS
+    is_converted = is_converted or _ANY_TYPE in source.text
+    return CallText(
+        needed, _python_deprecation(source, call, above), _python_start(above), is_converted
+    )
 
 
 def _called(call: ast.Call) -> str:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from pytpc.base.closest import closest
 from pytpc.base.wording import listed, plain
-from pytpc.lint.facts import Facts, Node, NodeRead, Setting, Unjudged, last_part, own_part
+from pytpc.lint.facts import Facts, Node, NodeRead, Setting, Unjudged, above, last_part, own_part
 from pytpc.lint.finding import Evidence, Finding, Spot
 from pytpc.static.parameters import DYNAMIC
 
@@ -25,6 +25,7 @@ _QOS = "qos_overrides"
 _MOST_NODES = 3
 ANY = "a node puts the names of parameters together"
 NO_NODE = "no node of that namespace is started"
+ELSEWHERE = "another launch file starts the node of that namespace"
 TEXT = "the name stands in the sources, and what is done with it is not followed"
 
 
@@ -53,7 +54,7 @@ def unread(facts: Facts) -> Unread:
             used.add(setting.spot)
             continue
         concerned = _concerned(facts, setting)
-        why = why or _why_unjudged(setting, concerned)
+        why = why or _why_unjudged(facts, setting, concerned)
         if why:
             reasons[why].add(setting.name)
             used.add(setting.spot)
@@ -83,10 +84,12 @@ def _concerned(facts: Facts, setting: Setting) -> list[Node]:
     return below or list(facts.nodes)
 
 
-def _why_unjudged(setting: Setting, concerned: list[Node]) -> str:
+def _why_unjudged(facts: Facts, setting: Setting, concerned: list[Node]) -> str:
     """Why it is not known whether a value is read; empty where it is known."""
     if not concerned:
         return NO_NODE
+    if not facts.owners(setting.name) and not facts.elsewhere.isdisjoint(above(setting.name)):
+        return ELSEWHERE
     unknown = next((node for node in concerned if node.unjudged), None)
     if unknown is not None:
         return unknown.unjudged

@@ -49,6 +49,8 @@ def _fault(read: NodeRead, value: object) -> str:
     given, wanted = type_of(value), _wanted(read)
     if read.is_table or not wanted or given in (wanted, "null", "binary"):
         return ""
+    if read.is_converted:
+        return ""
     is_compound = given in ("list", "map")
     called, needs = _a(given), _a(wanted)
     if read.is_ros2:
@@ -59,6 +61,9 @@ def _fault(read: NodeRead, value: object) -> str:
         rounded = _rounded(value)
         is_other = wanted == "int" and value != rounded
         return f"a double, and the node rounds it to {rounded}" if is_other else ""
+    if _is_python(read) and wanted != "string" and given != "string":
+        # In Python, 0 and 1 are as good as false and true.
+        return "" if value in (0, 1) else f"{called}, and the node expects {needs} as its default is"
     if _is_python(read):
         return f"{called}, and the node expects {needs} as its default is"
     unset = "" if read.default is None else f" ({shown_value(read.default)})"
@@ -160,7 +165,9 @@ def _effect(one: Declared, setting: Setting) -> str:
         return ""
     assert isinstance(setting.value, int | float)
     end = one.low if one.low is not None and setting.value < one.low else one.high
-    return f"; its server makes {show(end)} of it"
+    # It compares; NaN is neither below nor above.
+    is_kept = math.isnan(setting.value) or end is None
+    return "" if is_kept else f"; its server makes {show(end)} of it"
 
 
 def spot_of(place: str) -> Spot:

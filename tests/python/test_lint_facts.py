@@ -6,15 +6,17 @@ from pathlib import Path
 
 import pytest
 from launch_samples import environment, make_package, needs_roslaunch
+from lint_samples import setting
 
 from pytpc.api.building import analyse
-from pytpc.api.lint_facts import Robot, settings_of
+from pytpc.api.lint_facts import Robot, _classes_in, _why_unknown_plugin, settings_of
 from pytpc.api.lint_mission import recorded
 from pytpc.base.paths import project_root
 from pytpc.lint.check import check
 from pytpc.lint.facts import Facts
 from pytpc.lint.finding import Finding
-from pytpc.processes.process import NONE
+from pytpc.processes.plugins import Plugin
+from pytpc.processes.process import NONE, Choice, Process
 from pytpc.python_analysis.rules_file import load_rules
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.ros2_arguments import origins_in_params
@@ -41,6 +43,16 @@ class Guard(Node):
 
 rclpy.init()
 rclpy.spin(Guard())
+"""
+ROSPY = """\
+#!/usr/bin/env python3
+import rospy
+from std_msgs.msg import Float64
+
+rospy.init_node('guard')
+out = rospy.Publisher('out', Float64, queue_size=1)
+if rospy.get_param('~beams', 4) > rospy.get_param('~rate', 5):
+    out.publish(1.0)
 """
 PARAMS = """\
 guard:
@@ -117,6 +129,60 @@ def test_a_node_that_was_not_analysed(tmp_path: Path):
     assert robot.node(nodelet, [nodelet], frozenset()).unjudged == (
         "/manager, which loads a node, is not started"
     )
+
+
+# `<remap from="~beams" to="/all/beams"/>`: rospy and roscpp read a parameter under its new name.
+# ROS 2 does not rename parameters.
+def test_a_name_that_is_remapped(tmp_path: Path):
+    remaps = (("~beams", "/all/beams"),)
+    folder = tmp_path / "robot"
+    robot = robot_at(folder)
+    node = LaunchNode("/guard", "robot", "guard.py", tmp_path, 1, 0, remaps=remaps)
+    names = {read.name for read in robot.node(node, [node], frozenset()).reads}
+    assert "/guard/beams" in names
+    (folder / "guard.py").write_text(ROSPY)
+    robot = Robot(analyse([folder], load_rules()), NONE, ())
+    names = {read.name for read in robot.node(node, [node], frozenset()).reads}
+    assert names == {"/all/beams", "/guard/rate"}
+
+
+# A module of the system, as diagnostic_updater, may read the parameters of the node, too.
+def test_a_module_of_the_system(tmp_path: Path):
+    modules = tmp_path / "modules"
+    modules.mkdir()
+    (modules / "updater.py").write_text("import rospy\nrospy.get_param('~diagnostic_period', 1)\n")
+    (modules / "other.py").write_text("'~strange'\n")
+    folder = tmp_path / "robot"
+    robot_at(folder)
+    script = ROSPY.replace("import rospy\n", "import rospy\nimport updater, other\n")
+    (folder / "guard.py").write_text(script)
+    robot = Robot(analyse([folder], load_rules()), NONE, (), {"PYTHONPATH": str(modules)})
+    node = LaunchNode("/guard", "robot", "guard.py", tmp_path, 1, 0)
+    found = robot.node(node, [node], frozenset({"diagnostic_period", "strange"}))
+    assert {"diagnostic_period", "strange"} & found.texts == {"diagnostic_period"}
+
+
+# A planner of another workspace: nobody knows what it reads.
+def test_a_plugin_whose_code_was_not_seen(tmp_path: Path):
+    plugin = Plugin("base/Planner", "base::Planner", "B", "base", tmp_path, tmp_path, 1)
+    found = Process("robot/move", "robot/move", None, (), (Choice("B", (plugin,), "launch"),))
+    names = frozenset({"base/Planner"})
+    assert _why_unknown_plugin("robot/move", [found], names) == ""
+    assert _why_unknown_plugin("robot/move", [found], names | {"teb/Planner"}) == (
+        "robot/move may load teb/Planner, which was not analysed with it"
+    )
+
+
+def test_values_that_name_plugins():
+    values = {
+        "/move/planner": "teb_planner/TebPlanner",
+        "/move/costmap/plugins": [{"name": "static", "type": "costmap_2d::StaticLayer"}],
+        "/move/topic": "front/scan",
+        "/move/kind": "sensor_msgs/Image",
+        "/other/planner": "other/Planner",
+    }
+    settings = [setting(name, value) for name, value in values.items()]
+    assert _classes_in(settings, "/move") == {"teb_planner/TebPlanner", "costmap_2d::StaticLayer"}
 
 
 # By the columns of events.parquet: of `faces.size() >= max_faces_` all 646 were false, with at most

@@ -101,6 +101,10 @@ def test_wrong_types(value: object, reads: NodeRead, why: str):
         ("a", read(X, api="rospy.get_param", type="")),
         ([1.0], read(X, type="std::vector<double>")),
         ({"p": 1}, read(X, type="XmlRpc::XmlRpcValue", is_table=True)),
+        # int(rospy.get_param('~x', '57600')), and flags that are numbers.
+        (115200, read(X, "57600", api="rospy.get_param", is_converted=True)),
+        (1, read(X, False, api="rospy.get_param")),
+        (True, read(X, 0, api="rospy.get_param")),
         (None, read(X, 0.7)),
     ],
 )
@@ -131,6 +135,15 @@ def test_out_of_range():
     choices = declared("x", None, None, choices=(("Fast", 1), ("Slow", 2)))
     [found] = out_of_range(facts({X: 3}, node(reads), declared=[choices]))
     assert found.text.endswith("outside of what is declared: 1 (Fast), 2 (Slow)")
+
+
+# A server of dynamic_reconfigure compares with both ends, and NaN is neither below nor above.
+def test_not_a_number_is_out_of_range_and_stays():
+    reads = read(X, api="dynamic_reconfigure::Server::setCallback")
+    for low, high in ((0.0, 1.0), (0.0, None), (None, 1.0)):
+        one = declared("x", low, high)
+        [found] = out_of_range(facts({X: math.nan}, node(reads), declared=[one]))
+        assert "its server makes" not in found.text
 
 
 @pytest.mark.parametrize(

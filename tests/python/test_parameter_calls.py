@@ -112,6 +112,14 @@ def test_python(package: Path, lineno: int, expected: CallText):
     assert call_text(f"{package}/guard.py", lineno, "rospy.get_param", "") == expected
 
 
+# rosserial reads its rate so: "57600" and 57600 are the same to it.
+def test_what_is_converted(tmp_path: Path):
+    file = tmp_path / "a.py"
+    file.write_text("rate = int(rospy.get_param('~rate', '57600'))\nrun(rospy.get_param('~x', 1))\n")
+    assert call_text(str(file), 1, "rospy.get_param", "").is_converted
+    assert not call_text(str(file), 2, "rospy.get_param", "").is_converted
+
+
 def test_a_place_that_is_not_there(tmp_path: Path):
     assert call_text(f"{tmp_path}/gone.cpp", 3, "ros::NodeHandle::param", "main()") == CallText()
     assert call_text(f"{tmp_path}/gone.py", 3, "rospy.get_param", "") == CallText()
@@ -136,6 +144,15 @@ def test_texts_that_stand_beside_no_read(package: Path):
     assert not found.converts("til")
     assert found.turns("max_yaw")
     assert not found.turns("yaw")
+
+
+# `sim_time` is in the line of an angle, and is none.
+def test_what_stands_beside_an_angle(tmp_path: Path):
+    (tmp_path / "a.cpp").write_text("x += sim_time * cos(yaw_goal + max_yaw); y = sin(th_goal_);\n")
+    source_texts.cache_clear()
+    found = source_texts(str(tmp_path))
+    names = ("sim_time", "yaw_goal", "max_yaw", "th_goal")
+    assert [name for name in names if found.turns(name)] == ["th_goal"]
 
 
 def test_code_that_reads_all(tmp_path: Path):
