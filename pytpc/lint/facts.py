@@ -163,6 +163,15 @@ class Facts:
     def _tables(self) -> frozenset[str]:
         return frozenset(one for name in self.by_name for one in above(name))
 
+    @cached_property
+    def reads_by_end(self) -> Mapping[str, Sequence[tuple[Node, NodeRead]]]:
+        """All reads by the last part of their names, with their nodes."""
+        found = defaultdict(list)
+        for node in self.nodes:
+            for read in node.reads:
+                found[last_part(read.name)].append((node, read))
+        return found
+
     def is_set(self, name: str) -> bool:
         """Whether a parameter, or one below it, is set."""
         return name in self.by_name or name in self._tables

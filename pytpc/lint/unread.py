@@ -23,6 +23,8 @@ _OF_ROS = frozenset(
 )
 _QOS = "qos_overrides"
 _MOST_NODES = 3
+# Of a whole robot; comparing each name with all of them takes long, and says little.
+_MOST_READS = 1000
 ANY = "a node puts the names of parameters together"
 NO_NODE = "no node of that namespace is started"
 ELSEWHERE = "another launch file starts the node of that namespace"
@@ -119,12 +121,15 @@ def _finding(facts: Facts, setting: Setting, concerned: list[Node]) -> Finding:
 def _meant(facts: Facts, setting: Setting, concerned: list[Node]) -> list[NodeRead]:
     """The reads that were most likely meant: of the same name elsewhere, or of one like it."""
     end = last_part(setting.name)
-    mine = [read for node in concerned for read in node.reads]
-    others = [read for node in facts.nodes if node not in concerned for read in node.reads]
-    same = _once(read for read in mine if last_part(read.name) == end)
-    same = same or _once(read for read in others if last_part(read.name) == end and read.is_exact)
+    names = {node.name for node in concerned}
+    alike = facts.reads_by_end.get(end, ())
+    same = _once(read for node, read in alike if node.name in names)
+    same = same or _once(read for _, read in alike if read.is_exact)
     if same:
         return same
+    mine = [read for node in concerned for read in node.reads]
+    if len(mine) > _MOST_READS:
+        return []
     unset = {read.name: read for read in mine if not facts.is_set(read.name) and not read.is_table}
     return [unset[name] for name in closest(setting.name, unset)]
 
