@@ -13,7 +13,17 @@ from pathlib import Path
 from pytpc.api.lint_system import of_libraries, of_python_modules
 from pytpc.conditions.parameter_calls import call_text
 from pytpc.conditions.source_texts import SourceTexts, source_texts
-from pytpc.lint.facts import Angle, Earlier, Facts, Node, NodeRead, Setting, last_part, own_part
+from pytpc.lint.facts import (
+    Angle,
+    Earlier,
+    Facts,
+    Node,
+    NodeRead,
+    Renamed,
+    Setting,
+    last_part,
+    own_part,
+)
 from pytpc.lint.finding import Spot
 from pytpc.processes.binaries import Libraries, system_folders
 from pytpc.processes.process import Process, Processes
@@ -40,12 +50,16 @@ _OF_MESSAGES = ("_msgs/", "_srvs/", "_msgs::", "_srvs::", "/msg/", "/srv/")
 
 @dataclass(frozen=True)
 class Robot:
-    """The analysed code of a workspace, for as many launch files as are checked."""
+    """The analysed code of a workspace, for as many launch files as are checked.
+
+    ``folders`` are those of its packages, also of such as have headers only.
+    """
 
     static: StaticInfo
     processes: Processes
     declared: Sequence[Declared]
     env: Mapping[str, str] = field(default_factory=dict)
+    folders: Sequence[Path] = ()
 
     @cached_property
     def _programs(self) -> Mapping[str, list[Process]]:
@@ -145,7 +159,32 @@ class Robot:
         files += [unit.path for process in processes for unit in process.units]
         texts |= of_libraries(self._libraries, dict.fromkeys(files), self._ours, wanted)
         texts |= of_python_modules(_python_files(known), self.env, wanted)
-        return Node(node.name, program, tuple(dict.fromkeys(reads)), why, texts)
+        return Node(
+            node.name, program, tuple(dict.fromkeys(reads)), why, texts, self._renamed(known)
+        )
+
+    @cached_property
+    def _renamers(self) -> Mapping[str, tuple[int, str]]:
+        """The functions that deal with old names: which text is the old one, and their files."""
+        roots = {str(folder) for folder in self.folders}
+        roots |= {unit.source_root for unit in self.static.units}
+        return {
+            name: place
+            for root in sorted(roots)
+            for name, place in source_texts(root).renamers.items()
+        }
+
+    def _renamed(self, units: Iterable[LinkUnit]) -> Mapping[str, Renamed]:
+        """The old names of parameters in the code of units, with the new ones."""
+        found: dict[str, Renamed] = {}
+        for root in sorted({unit.source_root for unit in units}):
+            for call in source_texts(root).renamings:
+                at, reader = self._renamers.get(call.function, (-1, ""))
+                if 0 <= at < len(call.texts):
+                    new = call.texts[1 if at == 0 else 0]
+                    spot = Spot(call.path, call.lineno)
+                    found[call.texts[at]] = Renamed(new, spot, reader)
+        return found
 
     def _processes(
         self, program: str, node: str, classes: frozenset[str] = frozenset()
@@ -241,9 +280,7 @@ def _plugins_of(processes: Iterable[Process]) -> frozenset[str]:
     return frozenset(name for one in processes for each in one.plugins for name in each.names)
 
 
-def _why_unknown_plugin(
-    program: str, processes: Sequence[Process], classes: frozenset[str]
-) -> str:
+def _why_unknown_plugin(program: str, processes: Sequence[Process], classes: frozenset[str]) -> str:
     """Why not all reads are known if values name a plugin whose code was not seen."""
     if not processes:
         return ""

@@ -151,6 +151,4 @@ def _texts_of_module(path: Path) -> frozenset[str]:
         for node in ast.walk(tree)
         if isinstance(node, ast.Constant) and isinstance(node.value, str)
     )
-    return frozenset(
-        text.rpartition("/")[2].lstrip("~") for text in texts if _NAME.fullmatch(text)
-    )
+    return frozenset(text.rpartition("/")[2].lstrip("~") for text in texts if _NAME.fullmatch(text))

@@ -84,12 +84,14 @@ def lint(question: Question, on_progress: Progress | None = None) -> Linted:
     workspace = question.workspace
     env = with_callers(nodes_env(workspace), os.environ)
     static = read_static(workspace)
-    robot = Robot(static, processes(workspace), declared_in(static), env)
+    packages = find_packages(workspace)
+    folders = [package.path for package in packages]
+    robot = Robot(static, processes(workspace), declared_in(static), env, folders)
     seen = recorded(question.missions, static) if question.missions else Recorded()
     files, params = _named(question)
     is_all = not question.launches
     if is_all:
-        files = files_of(find_packages(workspace))[0]
+        files = files_of(packages)[0]
     traces, unread = _traces(env, files, question.args, on_progress)
     if unread and not is_all:
         path, error = next(iter(unread.items()))

@@ -7,7 +7,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from pytpc.lint.finding import Spot
 from pytpc.recording.declaration import Declared
@@ -86,12 +86,21 @@ class NodeRead:
         return self.api.startswith(("rclcpp", "rclpy"))
 
 
+class Renamed(NamedTuple):
+    """The new name of a parameter, where code says so, and the file with the code that reads it."""
+
+    new: str
+    spot: Spot
+    reader: str
+
+
 @dataclass(frozen=True)
 class Node:
     """A node that is started.
 
     ``unjudged`` says why its reads are not all known; empty where they are. ``texts`` are texts in
     its sources and libraries that may be names of parameters, though no read of them is known.
+    ``renamed`` has the last parts of names that its code calls old.
     """
 
     name: str
@@ -99,6 +108,7 @@ class Node:
     reads: Sequence[NodeRead] = ()
     unjudged: str = ""
     texts: frozenset[str] = frozenset()
+    renamed: Mapping[str, Renamed] = field(default_factory=dict)
 
     @cached_property
     def _by_end(self) -> Mapping[str, list[tuple[re.Pattern[str], NodeRead]]]:
@@ -162,6 +172,14 @@ class Facts:
     @cached_property
     def _tables(self) -> frozenset[str]:
         return frozenset(one for name in self.by_name for one in above(name))
+
+    @cached_property
+    def declared_by_name(self) -> Mapping[str, Sequence[Declared]]:
+        """The declarations by their names."""
+        found = defaultdict(list)
+        for one in self.declared:
+            found[one.parameter].append(one)
+        return found
 
     @cached_property
     def reads_by_end(self) -> Mapping[str, Sequence[tuple[Node, NodeRead]]]:

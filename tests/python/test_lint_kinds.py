@@ -1,12 +1,13 @@
 """The kinds of findings but for unread values: each with what must not be found."""
 
 import math
+from dataclasses import replace
 
 import pytest
 from lint_samples import FILE, SOURCE, facts, node, read, said, setting
 
 from pytpc.lint.angles import units_of_angles
-from pytpc.lint.facts import Crossing, Earlier, Facts, NodeRead
+from pytpc.lint.facts import Crossing, Earlier, Facts, NodeRead, Renamed
 from pytpc.lint.finding import Spot
 from pytpc.lint.limits import contradicting
 from pytpc.lint.recorded import never_crossed, without_effect
@@ -67,6 +68,29 @@ def test_deprecated():
     # Not set; and another node reads it, who likes the name.
     assert list(deprecated(facts({}, node(old)))) == []
     assert list(deprecated(facts({X: 1.0}, node(old, read(X))))) == []
+
+
+# nav_core's loadParameterWithDeprecation(nh, "path_distance_bias", "pdist_scale", 0.6) reads both.
+def test_an_old_name():
+    magic = read("/robot/guard/<dynamic>", spot=Spot("/ws/src/core/magic.h", 60))
+    new = Renamed("path_distance_bias", Spot(SOURCE, 169), "/ws/src/core/magic.h")
+    one = node(magic, renamed={"x": new})
+    [found] = deprecated(facts({X: 1.0}, one))
+    assert found.text == "/robot/guard/x is deprecated; its new name is path_distance_bias"
+    assert found.evidence == (("the node says so", Spot(SOURCE, 169)),)
+    # Another planner of the same node reads it under this name.
+    both = node(magic, read(X, 1.0), renamed={"x": new})
+    assert list(deprecated(facts({X: 1.0}, both))) == []
+    assert list(deprecated(facts({"/other/x": 1.0}, one))) == []
+
+
+def test_a_declaration_that_calls_its_field_deprecated():
+    reads = read(X, api="dynamic_reconfigure::Server::setCallback")
+    old = replace(declared("x", 0, 1), description="Deprecated, use limit")
+    [found] = deprecated(facts({X: 0.5}, node(reads), declared=[old]))
+    assert found.text == "the declaration of /robot/guard/x calls it deprecated"
+    other = declared("x", 0, 1, place="/ws/src/robot/cfg/Other.cfg:3")
+    assert list(deprecated(facts({X: 0.5}, node(reads), declared=[old, other]))) == []
 
 
 @pytest.mark.parametrize(

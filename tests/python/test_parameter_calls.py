@@ -115,7 +115,9 @@ def test_python(package: Path, lineno: int, expected: CallText):
 # rosserial reads its rate so: "57600" and 57600 are the same to it.
 def test_what_is_converted(tmp_path: Path):
     file = tmp_path / "a.py"
-    file.write_text("rate = int(rospy.get_param('~rate', '57600'))\nrun(rospy.get_param('~x', 1))\n")
+    file.write_text(
+        "rate = int(rospy.get_param('~rate', '57600'))\nrun(rospy.get_param('~x', 1))\n"
+    )
     assert call_text(str(file), 1, "rospy.get_param", "").is_converted
     assert not call_text(str(file), 2, "rospy.get_param", "").is_converted
 
@@ -153,6 +155,20 @@ def test_what_stands_beside_an_angle(tmp_path: Path):
     found = source_texts(str(tmp_path))
     names = ("sim_time", "yaw_goal", "max_yaw", "th_goal")
     assert [name for name in names if found.turns(name)] == ["th_goal"]
+
+
+def test_functions_of_old_names(tmp_path: Path):
+    (tmp_path / "magic.h").write_text(
+        "template <class T> T loadWithDeprecation(const NodeHandle& nh, const std::string now,\n"
+        "    const std::string old_name, const T& value) {\n"
+    )
+    (tmp_path / "a.cpp").write_text(
+        'x = loadWithDeprecation<double>(nh,\n  "bias", "scale", 0.6);\nlogDeprecated("bias");\n'
+    )
+    source_texts.cache_clear()
+    found = source_texts(str(tmp_path))
+    assert found.renamers == {"loadWithDeprecation": (1, f"{tmp_path}/magic.h")}
+    assert [(one.texts, one.lineno) for one in found.renamings] == [(("bias", "scale"), 1)]
 
 
 def test_code_that_reads_all(tmp_path: Path):
