@@ -5,12 +5,14 @@ from __future__ import annotations
 import os
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 
 from pytpc.api.lint_system import of_libraries, of_python_modules
+from pytpc.base.errors import InputError
+from pytpc.base.source_bytes import read_bytes
 from pytpc.conditions.parameter_calls import call_text
 from pytpc.conditions.source_texts import SourceTexts, source_texts
 from pytpc.lint.facts import (
@@ -38,6 +40,7 @@ from pytpc.values.origin_places import Places
 from pytpc.values.origins import Origin
 from pytpc.values.recording import is_of_ros, leaves
 from pytpc.values.trace import LaunchNode, Trace
+from pytpc.values.yaml_tree import YamlSetting, read_yaml, settings
 
 _TABLES = ("XmlRpc", "map<", "unordered_map<", "dict")
 _PYTHON_ROS1 = ("rospy", "rosparam")
@@ -362,7 +365,10 @@ def _type_of(one: Declared) -> str:
 def settings_of(trace: Trace) -> list[Setting]:
     """The values that a launch file sets, without those of roslaunch itself."""
     if trace.placed is not None:
-        return [_placed(origin) for name, origin in trace.placed.items() if not is_of_ros(name)]
+        twins = cache(_keys_of_file)
+        return [
+            _placed(origin, twins) for name, origin in trace.placed.items() if not is_of_ros(name)
+        ]
     places = Places(trace)
     found: list[Setting] = []
     for name, placed in places.all_origins().items():
@@ -382,12 +388,26 @@ def settings_of(trace: Trace) -> list[Setting]:
     return found
 
 
-def _placed(origin: Origin) -> Setting:
+_Twins = Callable[[Path], Mapping[tuple[str, ...], YamlSetting]]
+
+
+def _keys_of_file(path: Path) -> Mapping[tuple[str, ...], YamlSetting]:
+    """The values of a params file by their keys; none if it cannot be read."""
+    try:
+        documents = read_yaml(read_bytes(path).decode("utf-8-sig", "replace"))
+    except (InputError, ValueError):
+        return {}
+    return settings(documents[0]) if documents else {}
+
+
+def _placed(origin: Origin, twins: _Twins) -> Setting:
+    twin = twins(origin.path).get(origin.keys) if origin.path and origin.keys else None
+    same = {f"{origin.path}:{lineno}" for lineno in (() if twin is None else twin.earlier)}
     earlier = []
     for words in origin.overridden:
         path, _, lineno = words.rpartition(":")
         spot = Spot(path, int(lineno)) if path and lineno.isdigit() else Spot(words)
-        earlier.append(Earlier(spot))
+        earlier.append(Earlier(spot, is_same_map=words in same))
     return Setting(origin.name, origin.value, _spot(origin), tuple(earlier))
 
 

@@ -30,6 +30,7 @@ _CPP_DECLARED_TYPE = re.compile(
 )
 _DEPRECATED = re.compile(r"deprecat|obsolete|no longer (?:used|supported)", re.IGNORECASE)
 _SAYS = re.compile(r"WARN|ERROR|\blog|print|cerr|cout|warn|INFO")
+_FIRST_TEXT = re.compile(r"\"([\w~/.]+)\"")
 _CPP_LOOP = re.compile(r"\b(?:while|for|do)\b|\]\s*\(|\]\s*\{")
 _CPP_START = frozenset({"main", "onInit"})
 _PYTHON_START = frozenset({"main", "__init__", "<module>", ""})
@@ -144,11 +145,31 @@ def _deprecation(lines: Sequence[str], at: int) -> int | None:
     if first is None:
         return None
     before = ""
+    called = _FIRST_TEXT.search(" ".join(lines[at : at + 2]))
     for number, line in enumerate(_block_behind(lines[first : first + _LONGEST_BLOCK]), first):
         if _DEPRECATED.search(line) and _SAYS.search(before + line):
-            return number + 1
+            # The message may be about another name.
+            parts = [
+                _message(lines[n], n == at)
+                for n in range(max(first, number - 1), number + 2)
+                if n < len(lines)
+            ]
+            is_about_it = called is None or _is_named(called[1], " ".join(parts))
+            return number + 1 if is_about_it else None
         before = line
     return None
+
+
+def _message(line: str, has_call: bool) -> str:
+    """What may be of a message in a line; behind the call that reads, where that is in it."""
+    said = _SAYS.search(line)
+    return line if not has_call else line[said.start() :] if said is not None else ""
+
+
+def _is_named(name: str, text: str) -> bool:
+    """Whether a text has the last part of a name, as a word."""
+    last = name.rpartition("/")[2].lstrip("~")
+    return re.search(rf"(?<!\w){re.escape(last)}(?!\w)", text) is not None
 
 
 def _opening_if(lines: Sequence[str], at: int) -> int | None:
@@ -250,7 +271,13 @@ def _is_needed(source: _Python, call: ast.Call, above: Sequence[ast.AST], last: 
 
 
 def _python_deprecation(source: _Python, call: ast.Call, above: Sequence[ast.AST]) -> int | None:
-    """The line beside a call, in the same block, that says that its name is deprecated."""
+    """The line beside a call, in the same block, that says that its name is deprecated.
+
+    It must have the name: beside a call there may be a message about another one.
+    """
+    given = call.args[0] if call.args else None
+    if not isinstance(given, ast.Constant) or not isinstance(given.value, str):
+        return None
     statement = next((one for one in (call, *above) if isinstance(one, ast.stmt)), None)
     block = source.parents.get(statement) if statement is not None else None
     for name in ("body", "orelse"):
@@ -258,10 +285,20 @@ def _python_deprecation(source: _Python, call: ast.Call, above: Sequence[ast.AST
         if isinstance(beside, list) and statement in beside:
             at = beside.index(statement)
             for one in beside[max(0, at - 1) : at + 2]:
-                text = ast.unparse(one) if isinstance(one, ast.Expr) else ""
-                if _DEPRECATED.search(text) and _SAYS.search(text):
-                    return int(one.lineno)
+                for said in _messages(one):
+                    text = ast.unparse(said)
+                    is_said = _DEPRECATED.search(text) and _SAYS.search(text)
+                    if is_said and _is_named(given.value, text):
+                        return said.lineno
     return None
+
+
+def _messages(statement: ast.stmt) -> Iterator[ast.stmt]:
+    """The calls in a statement, or in an ``if`` behind a call, that may print a message."""
+    if isinstance(statement, ast.Expr):
+        yield statement
+    elif isinstance(statement, ast.If):
+        yield from (one for one in statement.body if isinstance(one, ast.Expr))
 
 
 def _python_start(above: Sequence[ast.AST]) -> bool:

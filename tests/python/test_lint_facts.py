@@ -94,6 +94,19 @@ def test_a_node_of_ros2(tmp_path: Path):
     ]  # fmt: skip
 
 
+# A section for all nodes and one for this node may both have it on purpose; one map may not.
+def test_a_key_that_a_params_file_has_twice(tmp_path: Path):
+    params = tmp_path / "params.yaml"
+    params.write_text(
+        "/**:\n  ros__parameters:\n    rate: 1.0\nguard:\n  ros__parameters:\n"
+        "    rate: 2.0\n    size: 3\n    size: 4\n"
+    )
+    trace = Trace(None, {}, {}, [], {}, placed=origins_in_params(params, "/guard/x"))
+    found = {one.name: one.earlier for one in settings_of(trace)}
+    assert [(one.spot.lineno, one.is_same_map) for one in found["/guard/size"]] == [(7, True)]
+    assert not any(one.is_same_map for one in found["/guard/rate"])
+
+
 @needs_roslaunch
 def test_the_values_of_a_launch_file(tmp_path: Path):
     launch = make_package(tmp_path)

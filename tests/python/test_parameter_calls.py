@@ -112,6 +112,28 @@ def test_python(package: Path, lineno: int, expected: CallText):
     assert call_text(f"{package}/guard.py", lineno, "rospy.get_param", "") == expected
 
 
+OLD_NAMES = """\
+limit = rospy.get_param('~old_limit', None)
+if limit is not None:
+    rospy.logwarn('~old_limit is deprecated')
+omega = rospy.get_param('~omega', 1.0)
+rospy.logwarn('omega is obsolete')
+tilt = rospy.get_param('~tilt', 0.3)
+"""
+
+
+# The message in line 5 is about another name than the call in line 6.
+def test_a_message_about_another_name(tmp_path: Path):
+    (tmp_path / "a.py").write_text(OLD_NAMES)
+    lines = [call_text(f"{tmp_path}/a.py", n, "rospy.get_param", "").deprecation for n in (1, 4, 6)]
+    assert lines == [3, 5, None]
+    (tmp_path / "a.cpp").write_text(
+        'if (nh.hasParam("old")) {\n  nh.getParam("now", x_);\n  ROS_WARN("old is obsolete");\n}\n'
+    )
+    api = "ros::NodeHandle::getParam"
+    assert call_text(f"{tmp_path}/a.cpp", 2, api, "main()").deprecation is None
+
+
 # rosserial reads its rate so: "57600" and 57600 are the same to it.
 def test_what_is_converted(tmp_path: Path):
     file = tmp_path / "a.py"
