@@ -124,6 +124,21 @@ def test_the_values_of_a_launch_file(tmp_path: Path):
     assert found["/left/arm/joints/elbow"].value == 1.0
 
 
+# roslaunch itself keeps only the last one of a node.
+@needs_roslaunch
+def test_a_param_that_one_node_has_twice(tmp_path: Path):
+    launch = make_package(tmp_path)
+    launch.write_text(
+        '<launch>\n<param name="rate" value="1"/>\n<param name="rate" value="2"/>\n'
+        '<node pkg="robot" type="a" name="a">\n<param name="limit" value="3"/>\n'
+        '<param name="limit" value="4"/>\n</node>\n</launch>\n'
+    )
+    found = {one.name: one for one in settings_of(trace_launch(environment(tmp_path), launch, {}))}
+    for name, value, earlier, lineno in (("/rate", 2, 1, 2), ("/a/limit", 4, 3, 5)):
+        assert found[name].value == value
+        assert [(one.value, one.spot.lineno) for one in found[name].earlier] == [(earlier, lineno)]
+
+
 @needs_roslaunch
 def test_a_key_that_one_map_has_twice(tmp_path: Path):
     launch = make_package(tmp_path)
