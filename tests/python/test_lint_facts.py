@@ -7,11 +7,14 @@ from pathlib import Path
 import pytest
 from launch_samples import environment, make_package, needs_roslaunch
 from lint_samples import setting
+from ros2_bags import Ros2Bag
+from test_ros2_values import event
 
 from pytpc.api.building import analyse
 from pytpc.api.lint_facts import Robot, _classes_in, _why_unknown_plugin, settings_of
 from pytpc.api.lint_mission import recorded
 from pytpc.base.paths import project_root
+from pytpc.ingest.parameter_events import TOPIC, TYPE
 from pytpc.lint.check import check
 from pytpc.lint.facts import Facts
 from pytpc.lint.finding import Finding
@@ -236,3 +239,46 @@ def test_recordings_are_added_up(times: int):
     assert [one.evaluations for one in found.crossings] == [
         times * one.evaluations for one in once.crossings
     ]
+
+
+SPEEDS = """\
+#!/usr/bin/env python3
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import Float64
+
+class Mission(Node):
+    def __init__(self):
+        super().__init__('mission')
+        self.once = self.declare_parameter('limits.speed', 5.0).value
+        self.declare_parameter('limits.rate', 5.0)
+        self.out = self.create_publisher(Float64, 'out', 1)
+        self.create_subscription(Float64, 'in', self.on_in, 1)
+
+    def on_in(self, message):
+        if message.data > self.once and message.data > self.get_parameter('limits.rate').value:
+            self.out.publish(message)
+
+rclpy.init()
+rclpy.spin(Mission())
+"""
+
+
+# The node takes the speed when it starts, and the rate with each message.
+def test_a_recorded_change_without_effect(tmp_path: Path):
+    folder = tmp_path / "robot"
+    robot_at(folder)
+    (folder / "guard.py").write_text(SPEEDS)
+    robot = Robot(analyse([folder], load_rules()), NONE, ())
+    with Ros2Bag(tmp_path / "bag", "mcap") as bag:
+        bag.log(1, "mission", "here")
+        for seconds, value in ((2, 5.0), (7, 6.5)):
+            values = {"limits.speed": value, "limits.rate": value}
+            bag._write(TOPIC, TYPE, seconds, event(seconds, {}, values, []))
+    seen = recorded([tmp_path / "bag"], robot.static)
+    changed = {one.name: (one.old, one.new) for one in seen.changes}
+    assert changed == {f"/robot1/guard/limits.{one}": (5.0, 6.5) for one in ("speed", "rate")}
+    node = LaunchNode("/robot1/guard", "robot", "guard.py", tmp_path, 1, 0)
+    facts = Facts((), [robot.node(node, [node], frozenset())], changes=seen.changes)
+    [found] = [one for one in findings(facts) if one.kind == "no-effect"]
+    assert (found.parameter, found.spot.lineno) == ("/robot1/guard/limits.speed", 9)
