@@ -41,6 +41,7 @@ _REPORTED_WITHIN = 6
 _NEAR = 4
 _LONGEST_BLOCK = 10
 _FARTHEST = 400
+_INITIALISERS = 12
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,12 +199,23 @@ def _at_start(lines: Sequence[str], at: int, function: str) -> bool:
         depth += line.count("}") - line.count("{")
         if depth < 0:
             depth = 0
-            opening = " ".join(lines[max(0, number - 1) : number + 1])
+            opening = " ".join(lines[_first_of(lines, number) : number + 1])
             if re.search(rf"\b{re.escape(name)}\s*\(", opening):
                 return True
             if _CPP_LOOP.search(opening):
                 return False
     return False
+
+
+def _first_of(lines: Sequence[str], number: int) -> int:
+    """Where the statement that a line is the last of begins; initialisers may be many lines."""
+    first = number
+    while first > max(0, number - _INITIALISERS):
+        before = lines[first - 1].strip()
+        if not before or before.endswith((";", "{", "}")):
+            break
+        first -= 1
+    return first
 
 
 @lru_cache(maxsize=512)

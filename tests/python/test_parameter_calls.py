@@ -77,6 +77,16 @@ def test_cpp(package: Path, lineno: int, expected: CallText):
     assert found == expected
 
 
+def test_a_constructor_with_initialisers(tmp_path: Path):
+    file = tmp_path / "a.cpp"
+    file.write_text(
+        "Grid::Grid(Handle &nh)\n    : wall_(4),\n      hits_(4),\n      far_(2) {\n"
+        '  nh.param("radius", radius_, 0.3);\n}\n'
+    )
+    found = call_text(str(file), 5, "ros::NodeHandle::param", "Grid::Grid(Handle&)")
+    assert found.at_start
+
+
 def test_cpp_in_a_callback(package: Path):
     api, function = "ros::NodeHandle::getParam", "Guard::onScan()"
     assert call_text(f"{package}/guard.cpp", 22, api, function) == CallText()
