@@ -5,16 +5,29 @@ from __future__ import annotations
 import os
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache
+from functools import cache, cached_property
 from pathlib import Path
 
+from pytpc.api.lint_system import of_libraries, of_python_modules
+from pytpc.base.errors import InputError
+from pytpc.base.source_bytes import read_bytes
 from pytpc.conditions.parameter_calls import call_text
 from pytpc.conditions.source_texts import SourceTexts, source_texts
-from pytpc.lint.facts import Angle, Earlier, Facts, Node, NodeRead, Setting, last_part, own_part
+from pytpc.lint.facts import (
+    Angle,
+    Earlier,
+    Facts,
+    Node,
+    NodeRead,
+    Renamed,
+    Setting,
+    last_part,
+    own_part,
+)
 from pytpc.lint.finding import Spot
-from pytpc.processes.binaries import Libraries, literals, system_folders
+from pytpc.processes.binaries import Libraries, system_folders
 from pytpc.processes.process import Process, Processes
 from pytpc.processes.starts import loaded_by
 from pytpc.recording.declaration import Declared
@@ -27,25 +40,29 @@ from pytpc.values.origin_places import Places
 from pytpc.values.origins import Origin
 from pytpc.values.recording import is_of_ros, leaves
 from pytpc.values.trace import LaunchNode, Trace
+from pytpc.values.yaml_tree import YamlSetting, read_yaml, settings
 
 _TABLES = ("XmlRpc", "map<", "unordered_map<", "dict")
 _PYTHON_ROS1 = ("rospy", "rosparam")
 _PREFIX = "get_parameters_by_prefix"
 _OF_SERVER = "dynamic_reconfigure"
-_READS = re.compile(rb"_ZNK?3ros(?:10NodeHandle\w{0,20}(?:[pP]aram)|5param)")
-_WORD = 8
-# `movabs` of x86-64 with eight letters that may begin a name.
-_MOVABS = re.compile(rb"[\x48\x49][\xb8-\xbf]([A-Za-z_/~][A-Za-z0-9_/]{7})")
+# The name of a plugin or a nodelet, as values have it; not a topic.
+_CLASS = re.compile(r"[A-Za-z]\w*(?:/|::)(?:\w+::)*[A-Z]\w*")
+_OF_MESSAGES = ("_msgs/", "_srvs/", "_msgs::", "_srvs::", "/msg/", "/srv/")
 
 
 @dataclass(frozen=True)
 class Robot:
-    """The analysed code of a workspace, for as many launch files as are checked."""
+    """The analysed code of a workspace, for as many launch files as are checked.
+
+    ``folders`` are those of its packages, also of such as have headers only.
+    """
 
     static: StaticInfo
     processes: Processes
     declared: Sequence[Declared]
     env: Mapping[str, str] = field(default_factory=dict)
+    folders: Sequence[Path] = ()
 
     @cached_property
     def _programs(self) -> Mapping[str, list[Process]]:
@@ -71,6 +88,17 @@ class Robot:
         return Libraries(folders=system_folders(self.env, ()))
 
     @cached_property
+    def started(self) -> frozenset[str]:
+        """The nodes that launch files of the workspace start."""
+        starts = (start for process in self.processes.found for start in process.starts)
+        return frozenset(start.node for start in starts if start.node)
+
+    @cached_property
+    def _ours(self) -> frozenset[Path]:
+        """The programs and libraries of the workspace."""
+        return frozenset(unit.path for one in self.processes.found for unit in one.units)
+
+    @cached_property
     def set_by_code(self) -> frozenset[str]:
         """The last parts of the names that code of the workspace sets."""
         roots = {unit.source_root for unit in self.static.units}
@@ -94,32 +122,85 @@ class Robot:
         """
         settings = settings_of(trace)
         names = frozenset(last_part(one.name) for one in settings) if wanted is None else wanted
-        nodes = [self.node(node, trace.nodes, names) for node in trace.nodes]
+        nodes = [
+            self.node(node, trace.nodes, names, _classes_in(settings, node.name))
+            for node in trace.nodes
+        ]
         return Facts(settings, nodes, self.declared, self.set_by_code)
 
-    def node(self, node: LaunchNode, beside: Sequence[LaunchNode], wanted: frozenset[str]) -> Node:
-        """What a node reads."""
+    def node(
+        self,
+        node: LaunchNode,
+        beside: Sequence[LaunchNode],
+        wanted: frozenset[str],
+        classes: frozenset[str] = frozenset(),
+    ) -> Node:
+        """What a node reads.
+
+        Args:
+            node: it.
+            beside: all nodes that are started with it.
+            wanted: last parts of names that are looked for in code of the system.
+            classes: names in the node's values that are like those of plugins.
+        """
         host = loaded_by(node)
         started = next((one for one in beside if one.name == host), None) if host else node
         program = f"{node.package}/{node.program}"
         if started is None:
             return Node(node.name, program, unjudged=f"{host}, which loads a node, is not started")
         run = f"{started.package}/{started.program}"
-        processes = self._processes(run, started.name)
+        classes |= _loaded_class(node)
+        processes = self._processes(run, started.name, classes)
         units = [self._unit(one.full_name) for process in processes for one in process.units]
         units += [unit for unit in self._units.get(run, ()) if unit not in units]
         known = [unit for unit in units if unit is not None]
         why = self._why_unjudged(run, processes, units)
-        reads = [read for unit in known for read in self._reads(unit, node.name)]
+        reads = [read for unit in known for read in self._reads(unit, node)]
+        why = why or _why_unknown_plugin(run, processes, classes)
         texts = self._texts(known)
-        hosts = [process.host for process in processes if process.host is not None]
-        texts |= self._of_libraries(tuple(hosts), wanted)
-        return Node(node.name, program, tuple(dict.fromkeys(reads)), why, texts)
+        files = [process.host for process in processes if process.host is not None]
+        files += [unit.path for process in processes for unit in process.units]
+        texts |= of_libraries(self._libraries, dict.fromkeys(files), self._ours, wanted)
+        texts |= of_python_modules(_python_files(known), self.env, wanted)
+        return Node(
+            node.name, program, tuple(dict.fromkeys(reads)), why, texts, self._renamed(known)
+        )
 
-    def _processes(self, program: str, node: str) -> list[Process]:
+    @cached_property
+    def _renamers(self) -> Mapping[str, tuple[int, str]]:
+        """The functions that deal with old names: which text is the old one, and their files."""
+        roots = {str(folder) for folder in self.folders}
+        roots |= {unit.source_root for unit in self.static.units}
+        return {
+            name: place
+            for root in sorted(roots)
+            for name, place in source_texts(root).renamers.items()
+        }
+
+    def _renamed(self, units: Iterable[LinkUnit]) -> Mapping[str, Renamed]:
+        """The old names of parameters in the code of units, with the new ones."""
+        found: dict[str, Renamed] = {}
+        for root in sorted({unit.source_root for unit in units}):
+            for call in source_texts(root).renamings:
+                at, reader = self._renamers.get(call.function, (-1, ""))
+                if 0 <= at < len(call.texts):
+                    new = call.texts[1 if at == 0 else 0]
+                    spot = Spot(call.path, call.lineno)
+                    found[call.texts[at]] = Renamed(new, spot, reader)
+        return found
+
+    def _processes(
+        self, program: str, node: str, classes: frozenset[str] = frozenset()
+    ) -> list[Process]:
+        """The processes that a node may be: those that a launch file starts under its name.
+
+        All, if none of these has a plugin that the node's values name, and another one has it.
+        """
         found = self._programs.get(program, [])
         own = [one for one in found if any(start.node == node for start in one.starts)]
-        return own or list(found)
+        there = _plugins_of(own)
+        is_other = any(name not in there for name in classes & _plugins_of(found))
+        return list(found) if is_other or not own else own
 
     def _unit(self, full_name: str) -> LinkUnit | None:
         found = self._units.get(full_name, ())
@@ -142,7 +223,7 @@ class Robot:
         failed = next((one for one in processes if one.outcome and one.outcome.failure), None)
         return "" if failed is None else f"{program} was not analysed as a whole"
 
-    def _reads(self, unit: LinkUnit, node: str) -> Iterator[NodeRead]:
+    def _reads(self, unit: LinkUnit, node: LaunchNode) -> Iterator[NodeRead]:
         texts = source_texts(unit.source_root)
         for read in unit.parameters:
             found = self._read(unit, read, node, texts)
@@ -151,7 +232,9 @@ class Robot:
                 yield from self._fields(unit, found)
 
     @staticmethod
-    def _read(unit: LinkUnit, read: ParameterRead, node: str, texts: SourceTexts) -> NodeRead:
+    def _read(
+        unit: LinkUnit, read: ParameterRead, node: LaunchNode, texts: SourceTexts
+    ) -> NodeRead:
         path = unit.absolute(read.file) if read.file else ""
         said = call_text(path, read.lineno, read.api, read.function)
         name = _full_name(read, node)
@@ -171,6 +254,7 @@ class Robot:
             None if said.deprecation is None else Spot(path, said.deprecation),
             said.at_start and _OF_SERVER not in read.api,
             angle,
+            said.is_converted,
         )
 
     def _fields(self, unit: LinkUnit, read: NodeRead) -> Iterator[NodeRead]:
@@ -193,36 +277,67 @@ class Robot:
         )
         return frozenset[str]().union(*found)
 
-    def _of_libraries(self, hosts: tuple[Path, ...], wanted: frozenset[str]) -> frozenset[str]:
-        """Those of the wanted names that a library of the system may read."""
-        found: set[str] = set()
-        ours = {unit.path for process in self.processes.found for unit in process.units}
-        for binary in self._libraries.all_of(hosts):
-            if binary.path not in ours and _reads_parameters(binary.path):
-                found |= literals(binary.path) & wanted
-                starts = _in_code(binary.path)
-                found |= {one for one in wanted if one[:_WORD] in starts}
-        return frozenset(found)
+
+def _plugins_of(processes: Iterable[Process]) -> frozenset[str]:
+    """The names and classes of the plugins that processes load."""
+    return frozenset(name for one in processes for each in one.plugins for name in each.names)
 
 
-@lru_cache(maxsize=256)
-def _in_code(path: Path) -> frozenset[str]:
-    """The texts of eight letters that the code of a library has as numbers.
-
-    A compiler builds a short text in place, eight bytes at a time, and has no literal of it then.
-    """
-    found = _MOVABS.findall(path.read_bytes())
-    return frozenset(text.decode("ascii") for text in found)
+def _why_unknown_plugin(program: str, processes: Sequence[Process], classes: frozenset[str]) -> str:
+    """Why not all reads are known if values name a plugin whose code was not seen."""
+    if not processes:
+        return ""
+    unknown = sorted(classes - _plugins_of(processes))
+    return f"{program} may load {unknown[0]}, which was not analysed with it" if unknown else ""
 
 
-@lru_cache(maxsize=1024)
-def _reads_parameters(path: Path) -> bool:
-    """Whether a library of ROS 1 calls what reads parameters, by the names of its symbols."""
-    return _READS.search(path.read_bytes()) is not None
+def _loaded_class(node: LaunchNode) -> frozenset[str]:
+    """The class of a nodelet or a component."""
+    words = node.args.split()
+    if node.container:
+        return frozenset({node.program})
+    is_nodelet = node.program == "nodelet" and words[:1] in (["load"], ["standalone"])
+    return frozenset(words[1:2]) if is_nodelet else frozenset()
 
 
-def _full_name(read: ParameterRead, node: str) -> str:
+def _classes_in(settings: Iterable[Setting], node: str) -> frozenset[str]:
+    """The texts in the values of a node that are like names of plugins."""
+    values = [one.value for one in settings if one.name.startswith(f"{node}/")]
+    found = set()
+    while values:
+        value = values.pop()
+        if isinstance(value, str) and _CLASS.fullmatch(value):
+            if not any(word in value for word in _OF_MESSAGES):
+                found.add(value)
+        elif isinstance(value, list | dict):
+            values += value.values() if isinstance(value, dict) else value
+    return frozenset(found)
+
+
+def _python_files(units: Iterable[LinkUnit]) -> frozenset[str]:
+    """The Python files that units are known to consist of."""
+    return frozenset(
+        path
+        for unit in units
+        if unit.is_python
+        for path in (unit.script_path, *(unit.absolute(read.file) for read in unit.parameters))
+        if path is not None
+    )
+
+
+def _full_name(read: ParameterRead, node: LaunchNode) -> str:
     """The full name of what a node reads, with ``<dynamic>`` for what is not known."""
+    name = _own_name(read, node.name)
+    if node.container or read.api.startswith(("rclcpp", "rclpy")):
+        return name
+    # roscpp and rospy give parameters other names as they do with topics.
+    for old, new in node.remaps:
+        if resolved(old, node.name) == name:
+            return resolved(new, node.name)
+    return name
+
+
+def _own_name(read: ParameterRead, node: str) -> str:
     if read.api.startswith(("rclcpp", "rclpy")):
         name = read.name
         if name.startswith("/"):
@@ -250,7 +365,10 @@ def _type_of(one: Declared) -> str:
 def settings_of(trace: Trace) -> list[Setting]:
     """The values that a launch file sets, without those of roslaunch itself."""
     if trace.placed is not None:
-        return [_placed(origin) for name, origin in trace.placed.items() if not is_of_ros(name)]
+        twins = cache(_keys_of_file)
+        return [
+            _placed(origin, twins) for name, origin in trace.placed.items() if not is_of_ros(name)
+        ]
     places = Places(trace)
     found: list[Setting] = []
     for name, placed in places.all_origins().items():
@@ -270,12 +388,26 @@ def settings_of(trace: Trace) -> list[Setting]:
     return found
 
 
-def _placed(origin: Origin) -> Setting:
+_Twins = Callable[[Path], Mapping[tuple[str, ...], YamlSetting]]
+
+
+def _keys_of_file(path: Path) -> Mapping[tuple[str, ...], YamlSetting]:
+    """The values of a params file by their keys; none if it cannot be read."""
+    try:
+        documents = read_yaml(read_bytes(path).decode("utf-8-sig", "replace"))
+    except (InputError, ValueError):
+        return {}
+    return settings(documents[0]) if documents else {}
+
+
+def _placed(origin: Origin, twins: _Twins) -> Setting:
+    twin = twins(origin.path).get(origin.keys) if origin.path and origin.keys else None
+    same = {f"{origin.path}:{lineno}" for lineno in (() if twin is None else twin.earlier)}
     earlier = []
     for words in origin.overridden:
         path, _, lineno = words.rpartition(":")
         spot = Spot(path, int(lineno)) if path and lineno.isdigit() else Spot(words)
-        earlier.append(Earlier(spot))
+        earlier.append(Earlier(spot, is_same_map=words in same))
     return Setting(origin.name, origin.value, _spot(origin), tuple(earlier))
 
 

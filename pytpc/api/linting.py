@@ -84,28 +84,32 @@ def lint(question: Question, on_progress: Progress | None = None) -> Linted:
     workspace = question.workspace
     env = with_callers(nodes_env(workspace), os.environ)
     static = read_static(workspace)
-    robot = Robot(static, processes(workspace), declared_in(static), env)
+    packages = find_packages(workspace)
+    folders = [package.path for package in packages]
+    robot = Robot(static, processes(workspace), declared_in(static), env, folders)
     seen = recorded(question.missions, static) if question.missions else Recorded()
     files, params = _named(question)
     is_all = not question.launches
     if is_all:
-        files = files_of(find_packages(workspace))[0]
+        files = files_of(packages)[0]
     traces, unread = _traces(env, files, question.args, on_progress)
     if unread and not is_all:
         path, error = next(iter(unread.items()))
         raise InputError(error, path)
     if is_all:
         traces = _outermost(traces)
-    checks = [_check(robot, robot.facts(trace), seen, question.kinds) for trace in traces]
+    started = robot.started | {node.name for trace in traces for node in trace.nodes}
+    known = [replace(robot.facts(trace), elsewhere=started) for trace in traces]
+    checks = [_check(one, seen, question.kinds) for one in known]
     for node, path in params:
-        checks.append(_check(robot, _facts_of_params(robot, node, path), seen, question.kinds))
+        checks.append(_check(_facts_of_params(robot, node, path), seen, question.kinds))
     found = joined(checks)
     checked = without_ignored(found, _ignored(found.findings))
     read = [trace.launch for trace in traces if trace.launch is not None]
     return Linted(checked, (*read, *(path for _, path in params)), unread, is_all)
 
 
-def _check(robot: Robot, facts: Facts, seen: Recorded, kinds: Collection[Kind]) -> Checked:
+def _check(facts: Facts, seen: Recorded, kinds: Collection[Kind]) -> Checked:
     with_recorded = replace(facts, changes=seen.changes, crossings=seen.crossings)
     return check(with_recorded, kinds)
 

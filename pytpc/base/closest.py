@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from itertools import islice
 from pathlib import Path
 
@@ -32,22 +32,39 @@ def closest(name: str, known: Iterable[str], most: int = _MOST) -> list[str]:
     matcher = SequenceMatcher(autojunk=False)
 
     def alike(ours: str, theirs: str) -> float:
-        matcher.set_seqs(ours, theirs)
-        # The quick ones are upper bounds.
-        if min(matcher.real_quick_ratio(), matcher.quick_ratio()) < _ENOUGH:
+        if _most_alike(ours, letters, theirs) < _ENOUGH:
             return 0.0
+        matcher.set_seqs(ours, theirs)
         return matcher.ratio()
 
     bare, last = _forms(name)
+    letters = {letter: last.count(letter) for letter in last}
     found: dict[str, float] = {}
     for one in dict.fromkeys(known):
         its_bare, its_last = _forms(one)
         # Names of one node begin alike, which says nothing about the parameter.
         parts = alike(last, its_last)
         if parts >= _ENOUGH:
-            found[one] = (parts + alike(bare, its_bare)) / 2
+            matcher.set_seqs(bare, its_bare)
+            whole = matcher.ratio() if matcher.quick_ratio() >= _ENOUGH else 0.0
+            found[one] = (parts + whole) / 2
     ordered = sorted(found, key=lambda one: (-found[one], one))
     return [one for one in ordered if found[one] >= found[ordered[0]] - _NEAR][:most]
+
+
+def _most_alike(ours: str, letters: Mapping[str, int], theirs: str) -> float:
+    """What the ratio of two names is at most: by their lengths, then by their letters.
+
+    Args:
+        ours, theirs: the names.
+        letters: how often ours has each letter.
+    """
+    both = len(ours) + len(theirs)
+    most = 2 * min(len(ours), len(theirs)) / both if both else 1.0
+    if most < _ENOUGH:
+        return most
+    shared = sum(min(theirs.count(letter), times) for letter, times in letters.items())
+    return 2 * shared / both if both else 1.0
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:

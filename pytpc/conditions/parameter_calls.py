@@ -30,22 +30,32 @@ _CPP_DECLARED_TYPE = re.compile(
 )
 _DEPRECATED = re.compile(r"deprecat|obsolete|no longer (?:used|supported)", re.IGNORECASE)
 _SAYS = re.compile(r"WARN|ERROR|\blog|print|cerr|cout|warn|INFO")
+_FIRST_TEXT = re.compile(r"\"([\w~/.]+)\"")
 _CPP_LOOP = re.compile(r"\b(?:while|for|do)\b|\]\s*\(|\]\s*\{")
 _CPP_START = frozenset({"main", "onInit"})
 _PYTHON_START = frozenset({"main", "__init__", "<module>", ""})
+# In a descriptor of ROS 2: the node takes values of all types.
+_ANY_TYPE = "dynamic_typing"
+_CONVERSIONS = frozenset({"int", "float", "str", "bool", "array", "literal_eval"})
 _REPORTED_WITHIN = 6
 _NEAR = 4
 _LONGEST_BLOCK = 10
 _FARTHEST = 400
+_INITIALISERS = 12
 
 
 @dataclass(frozen=True, slots=True)
 class CallText:
-    """What the source says beside a call; ``deprecation`` is the number of a line."""
+    """What the source says beside a call.
+
+    ``deprecation`` is the number of a line. ``is_converted`` says that the code makes a number, a
+    text or a flag of the value, of whatever type it is.
+    """
 
     needed: Needed = ""
     deprecation: int | None = None
     at_start: bool = False
+    is_converted: bool = False
 
 
 NOTHING = CallText()
@@ -69,7 +79,10 @@ def call_text(path: str, lineno: int, api: str, function: str) -> CallText:
         return NOTHING
     at = lineno - 1
     return CallText(
-        _needed(lines, at, api), _deprecation(lines, at), _at_start(lines, at, function)
+        _needed(lines, at, api),
+        _deprecation(lines, at),
+        _at_start(lines, at, function),
+        any(_ANY_TYPE in line for line in lines),
     )
 
 
@@ -133,11 +146,31 @@ def _deprecation(lines: Sequence[str], at: int) -> int | None:
     if first is None:
         return None
     before = ""
+    called = _FIRST_TEXT.search(" ".join(lines[at : at + 2]))
     for number, line in enumerate(_block_behind(lines[first : first + _LONGEST_BLOCK]), first):
         if _DEPRECATED.search(line) and _SAYS.search(before + line):
-            return number + 1
+            # The message may be about another name.
+            parts = [
+                _message(lines[n], n == at)
+                for n in range(max(first, number - 1), number + 2)
+                if n < len(lines)
+            ]
+            is_about_it = called is None or _is_named(called[1], " ".join(parts))
+            return number + 1 if is_about_it else None
         before = line
     return None
+
+
+def _message(line: str, has_call: bool) -> str:
+    """What may be of a message in a line; behind the call that reads, where that is in it."""
+    said = _SAYS.search(line)
+    return line if not has_call else line[said.start() :] if said is not None else ""
+
+
+def _is_named(name: str, text: str) -> bool:
+    """Whether a text has the last part of a name, as a word."""
+    last = name.rpartition("/")[2].lstrip("~")
+    return re.search(rf"(?<!\w){re.escape(last)}(?!\w)", text) is not None
 
 
 def _opening_if(lines: Sequence[str], at: int) -> int | None:
@@ -166,12 +199,23 @@ def _at_start(lines: Sequence[str], at: int, function: str) -> bool:
         depth += line.count("}") - line.count("{")
         if depth < 0:
             depth = 0
-            opening = " ".join(lines[max(0, number - 1) : number + 1])
+            opening = " ".join(lines[_first_of(lines, number) : number + 1])
             if re.search(rf"\b{re.escape(name)}\s*\(", opening):
                 return True
             if _CPP_LOOP.search(opening):
                 return False
     return False
+
+
+def _first_of(lines: Sequence[str], number: int) -> int:
+    """Where the statement that a line is the last of begins; initialisers may be many lines."""
+    first = number
+    while first > max(0, number - _INITIALISERS):
+        before = lines[first - 1].strip()
+        if not before or before.endswith((";", "{", "}")):
+            break
+        first -= 1
+    return first
 
 
 @lru_cache(maxsize=512)
@@ -213,7 +257,12 @@ def _of_python(source: _Python, lineno: int, api: str) -> CallText:
     call = found[0]
     above = list(source.above(call))
     needed: Needed = "fails" if _is_needed(source, call, above, last) else ""
-    return CallText(needed, _python_deprecation(source, call, above), _python_start(above))
+    outer = above[0] if above else None
+    is_converted = isinstance(outer, ast.Call) and _called(outer) in _CONVERSIONS
+    is_converted = is_converted or _ANY_TYPE in source.text
+    return CallText(
+        needed, _python_deprecation(source, call, above), _python_start(above), is_converted
+    )
 
 
 def _called(call: ast.Call) -> str:
@@ -234,7 +283,13 @@ def _is_needed(source: _Python, call: ast.Call, above: Sequence[ast.AST], last: 
 
 
 def _python_deprecation(source: _Python, call: ast.Call, above: Sequence[ast.AST]) -> int | None:
-    """The line beside a call, in the same block, that says that its name is deprecated."""
+    """The line beside a call, in the same block, that says that its name is deprecated.
+
+    It must have the name: beside a call there may be a message about another one.
+    """
+    given = call.args[0] if call.args else None
+    if not isinstance(given, ast.Constant) or not isinstance(given.value, str):
+        return None
     statement = next((one for one in (call, *above) if isinstance(one, ast.stmt)), None)
     block = source.parents.get(statement) if statement is not None else None
     for name in ("body", "orelse"):
@@ -242,10 +297,20 @@ def _python_deprecation(source: _Python, call: ast.Call, above: Sequence[ast.AST
         if isinstance(beside, list) and statement in beside:
             at = beside.index(statement)
             for one in beside[max(0, at - 1) : at + 2]:
-                text = ast.unparse(one) if isinstance(one, ast.Expr) else ""
-                if _DEPRECATED.search(text) and _SAYS.search(text):
-                    return int(one.lineno)
+                for said in _messages(one):
+                    text = ast.unparse(said)
+                    is_said = _DEPRECATED.search(text) and _SAYS.search(text)
+                    if is_said and _is_named(given.value, text):
+                        return said.lineno
     return None
+
+
+def _messages(statement: ast.stmt) -> Iterator[ast.stmt]:
+    """The calls in a statement, or in an ``if`` behind a call, that may print a message."""
+    if isinstance(statement, ast.Expr):
+        yield statement
+    elif isinstance(statement, ast.If):
+        yield from (one for one in statement.body if isinstance(one, ast.Expr))
 
 
 def _python_start(above: Sequence[ast.AST]) -> bool:

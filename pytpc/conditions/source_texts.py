@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
+from typing import NamedTuple
 
 from pytpc.base.source_bytes import source_bytes
 from pytpc.conditions.parameter_calls import without_comments
@@ -31,10 +32,25 @@ _RADIANS = re.compile(
     r"\b(?:sin|cos|tan|sinf|cosf|setRPY|setEuler|setYaw|createQuaternion\w*|quaternion_from_euler"
     r"|normalize_angle\w*|shortest_angular_distance|AngleAxis\w?)\s*\("
 )
+# A variable or a member, with a sign.
+_ALONE = re.compile(r"\s*[-+]?\s*(?:\w+(?:\.|->|::))*([A-Za-z]\w*)\s*")
+_RENAMER = re.compile(
+    r"\b(\w*(?:eprecat|enamed|bsolete)\w*)\s*(?:<[^<>()]*>\s*)?\(([^;{}()]{1,400})"
+)
+_OLD = re.compile(r"\b(?:old|deprecated|obsolete)_?\w*\s*$", re.IGNORECASE)
 _NOT_SOURCES = frozenset({"build", "devel", "install", "log", "test", "tests", "__pycache__"})
 _LARGEST = 4 << 20
 _BESIDE = 2
 _FIRST_LINE = 200
+
+
+class Renaming(NamedTuple):
+    """A call of a function of old names: the texts that it is given, and its place."""
+
+    function: str
+    texts: tuple[str, ...]
+    path: str
+    lineno: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,14 +60,18 @@ class SourceTexts:
     ``texts`` has for each text, without its namespace, its places: file and line. ``sets`` are the
     names, without namespaces, of parameters that code sets. ``reads_all`` says that code reads all
     parameters of a namespace. ``converted`` are lines in which an angle in degrees is converted,
-    ``turned`` those in which a function takes one in radians.
+    ``turned`` what is handed, as it is, to a function that takes one in radians.
+    ``renamings`` are calls of functions that deal with old names, ``renamers`` the functions of
+    this kind that are defined here: which of their texts, from 0, is the old name.
     """
 
     texts: dict[str, list[tuple[str, int]]]
     sets: frozenset[str]
     reads_all: bool
     converted: tuple[str, ...]
-    turned: tuple[str, ...] = ()
+    turned: frozenset[str] = frozenset()
+    renamings: tuple[Renaming, ...] = ()
+    renamers: Mapping[str, tuple[int, str]] = field(default_factory=dict)
 
     def unread(self, reads: Collection[tuple[str, int]], *, python: bool) -> frozenset[str]:
         """The texts in the files of a language at other places than beside one of these reads."""
@@ -64,19 +84,15 @@ class SourceTexts:
 
     def converts(self, name: str) -> bool:
         """Whether what has the name of a parameter is converted from degrees somewhere."""
-        return _stands_in(name, self.converted)
+        word = re.compile(rf"(?<![A-Za-z0-9_]){re.escape(name.rstrip('_'))}(?![A-Za-z0-9])")
+        return any(word.search(line) for line in self.converted)
 
     def turns(self, name: str) -> bool:
         """Whether what has the name of a parameter goes to a function that takes radians.
 
         A name of one word may be that of something else.
         """
-        return "_" in name and _stands_in(name, self.turned)
-
-
-def _stands_in(name: str, lines: Collection[str]) -> bool:
-    word = re.compile(rf"(?<![A-Za-z0-9_]){re.escape(name.rstrip('_'))}(?![A-Za-z0-9])")
-    return any(word.search(line) for line in lines)
+        return "_" in name and name.rstrip("_") in self.turned
 
 
 @lru_cache(maxsize=256)
@@ -85,8 +101,10 @@ def source_texts(package: str) -> SourceTexts:
     texts: dict[str, list[tuple[str, int]]] = {}
     sets: set[str] = set()
     converted: list[str] = []
-    turned: list[str] = []
+    turned: set[str] = set()
     reads_all = False
+    renamings: list[Renaming] = []
+    renamers: dict[str, tuple[int, str]] = {}
     for path in _sources(package):
         lines = _read(path)
         for lineno, line in enumerate(lines, start=1):
@@ -98,9 +116,48 @@ def source_texts(package: str) -> SourceTexts:
             reads_all = reads_all or _READS_ALL.search(line) is not None
             if _DEGREES.search(line):
                 converted.append(line)
-            elif _RADIANS.search(line):
-                turned.append(line)
-    return SourceTexts(texts, frozenset(sets), reads_all, tuple(converted), tuple(turned))
+            else:
+                turned.update(_handed(line))
+        if path.name.endswith(_CPP):
+            _add_renamings("\n".join(lines), str(path), renamings, renamers)
+    return SourceTexts(
+        texts,
+        frozenset(sets),
+        reads_all,
+        tuple(converted),
+        frozenset(turned),
+        tuple(renamings),
+        renamers,
+    )
+
+
+def _add_renamings(
+    text: str, path: str, renamings: list[Renaming], renamers: dict[str, tuple[int, str]]
+) -> None:
+    """Add calls and definitions of functions whose names say that they deal with old names."""
+    for found in _RENAMER.finditer(text):
+        name, given = found[1], found[2]
+        texts = tuple(re.findall(r'"([\w~/.]+)"', given))
+        if len(texts) > 1:
+            lineno = text.count("\n", 0, found.start()) + 1
+            renamings.append(Renaming(name, texts, path, lineno))
+            continue
+        strings = [one for one in given.split(",") if re.search(r"\bstring\b|\bchar\b", one)]
+        old = [number for number, one in enumerate(strings) if _OLD.search(one)]
+        if len(strings) > 1 and len(old) == 1:
+            renamers[name] = old[0], path
+
+
+def _handed(line: str) -> Iterator[str]:
+    """The names of what a line hands, as it is, to functions that take an angle in radians.
+
+    >>> list(_handed("q.setRPY(0, 0, -cfg.delta_yaw_); y = sim_time * cos(th + sim_step * 2);"))
+    ['delta_yaw']
+    """
+    for call in _RADIANS.finditer(line):
+        for argument in re.split(r"[,)]", line[call.end() :].partition(";")[0]):
+            if named := _ALONE.fullmatch(argument):
+                yield named[1].rstrip("_")
 
 
 def _last(name: str) -> str:

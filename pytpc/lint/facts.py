@@ -7,7 +7,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from pytpc.lint.finding import Spot
 from pytpc.recording.declaration import Declared
@@ -16,6 +16,10 @@ from pytpc.static.parameters import DYNAMIC
 
 Angle = Literal["", "degrees", "radians"]
 Needed = Literal["", "fails", "reports"]
+# Stand for what is not known, while the rest of a name is escaped.
+_ANY_FOLDER, _ANY = "\0", "\1"
+_PATTERNS = {_ANY_FOLDER: "/(?:.*/)?", _ANY: ".*"}
+_PLACES = re.compile("([\0\1])")
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +55,7 @@ class NodeRead:
     without a value, if it has no default: ``fails``, or ``reports`` an error. ``deprecation`` is
     the line beside the call that calls the name deprecated. ``at_start`` says that the call can
     only be made while the node starts. ``angle`` is the unit in which the code takes the value.
+    ``is_converted`` says that the code takes it of any type.
     """
 
     name: str
@@ -63,6 +68,7 @@ class NodeRead:
     deprecation: Spot | None = None
     at_start: bool = False
     angle: Angle = ""
+    is_converted: bool = False
 
     @property
     def is_exact(self) -> bool:
@@ -80,12 +86,21 @@ class NodeRead:
         return self.api.startswith(("rclcpp", "rclpy"))
 
 
+class Renamed(NamedTuple):
+    """The new name of a parameter, where code says so, and the file with the code that reads it."""
+
+    new: str
+    spot: Spot
+    reader: str
+
+
 @dataclass(frozen=True)
 class Node:
     """A node that is started.
 
     ``unjudged`` says why its reads are not all known; empty where they are. ``texts`` are texts in
     its sources and libraries that may be names of parameters, though no read of them is known.
+    ``renamed`` has the last parts of names that its code calls old.
     """
 
     name: str
@@ -93,6 +108,7 @@ class Node:
     reads: Sequence[NodeRead] = ()
     unjudged: str = ""
     texts: frozenset[str] = frozenset()
+    renamed: Mapping[str, Renamed] = field(default_factory=dict)
 
     @cached_property
     def _by_end(self) -> Mapping[str, list[tuple[re.Pattern[str], NodeRead]]]:
@@ -136,14 +152,15 @@ class Crossing:
 class Facts:
     """All that is known.
 
-    ``set_by_code`` are the last parts of names that code sets. ``changes`` were made while a
-    recorded robot ran.
+    ``set_by_code`` are the last parts of names that code sets. ``elsewhere`` are nodes that other
+    launch files start. ``changes`` were made while a recorded robot ran.
     """
 
     settings: Sequence[Setting]
     nodes: Sequence[Node]
     declared: Sequence[Declared] = ()
     set_by_code: frozenset[str] = frozenset()
+    elsewhere: frozenset[str] = frozenset()
     changes: Sequence[ValueChange] = ()
     crossings: Sequence[Crossing] = ()
 
@@ -154,7 +171,24 @@ class Facts:
 
     @cached_property
     def _tables(self) -> frozenset[str]:
-        return frozenset(above for name in self.by_name for above in _namespaces(name))
+        return frozenset(one for name in self.by_name for one in above(name))
+
+    @cached_property
+    def declared_by_name(self) -> Mapping[str, Sequence[Declared]]:
+        """The declarations by their names."""
+        found = defaultdict(list)
+        for one in self.declared:
+            found[one.parameter].append(one)
+        return found
+
+    @cached_property
+    def reads_by_end(self) -> Mapping[str, Sequence[tuple[Node, NodeRead]]]:
+        """All reads by the last part of their names, with their nodes."""
+        found = defaultdict(list)
+        for node in self.nodes:
+            for read in node.reads:
+                found[last_part(read.name)].append((node, read))
+        return found
 
     def is_set(self, name: str) -> bool:
         """Whether a parameter, or one below it, is set."""
@@ -209,13 +243,20 @@ def own_part(name: str) -> str:
     return last_part(name).rpartition(".")[2]
 
 
-def _namespaces(name: str) -> Iterator[str]:
+def above(name: str) -> Iterator[str]:
+    """The namespaces that a name is in, from the inside.
+
+    >>> list(above("/arm/pid/p"))
+    ['/arm/pid', '/arm']
+    """
     while (name := name.rpartition("/")[0]) != "":
         yield name
 
 
 def _pattern(read: NodeRead) -> re.Pattern[str]:
+    """What the full names of a read look like; a part that is not known may be empty."""
     name = read.name.rstrip("/")
-    known = ".+".join(re.escape(part) for part in name.split(DYNAMIC))
+    places = name.replace(f"/{DYNAMIC}/", _ANY_FOLDER).replace(DYNAMIC, _ANY)
+    known = "".join(_PATTERNS.get(part) or re.escape(part) for part in _PLACES.split(places))
     below = r"(?:[/.].+)?" if read.is_table else ""
     return re.compile(known + below)

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from pytpc.base.wording import plain, shown_value
-from pytpc.lint.facts import Earlier, Facts, Setting
+from pytpc.lint.facts import Earlier, Facts, NodeRead, Renamed, Setting, last_part
 from pytpc.lint.finding import Evidence, Finding, Severity
+from pytpc.lint.values import declared_for, spot_of
+from pytpc.recording.declaration import Declared
+
+_OLD = re.compile(r"\b(?:deprecated|obsolete)\b", re.IGNORECASE)
 
 
 def set_twice(facts: Facts) -> Iterator[Finding]:
@@ -63,10 +68,40 @@ def deprecated(facts: Facts) -> Iterator[Finding]:
     """Values of parameters that the code, or their declaration, calls deprecated."""
     for setting in facts.settings:
         reads = [read for _, read in facts.readers(setting.name)]
+        renamed = _renamed(facts, setting, reads)
+        if renamed is not None:
+            text = f"{plain(setting.name)} is deprecated; its new name is {plain(renamed.new)}"
+            places = (Evidence("the node says so", renamed.spot),)
+            yield Finding("deprecated", "warning", setting.spot, setting.name, text, places)
+            continue
+        declared = _called_old(facts, setting, reads)
+        if declared is not None:
+            text = f"the declaration of {plain(setting.name)} calls it deprecated"
+            places = (Evidence("declared", spot_of(declared.place)),)
+            yield Finding("deprecated", "warning", setting.spot, setting.name, text, places)
+            continue
         known = [read for read in reads if read.deprecation is not None]
         if known and len(known) == len(reads):
             read = known[0]
             assert read.deprecation is not None
             text = f"the node calls {plain(setting.name)} deprecated"
-            places = (Evidence("it says so", read.deprecation), Evidence("read", read.spot))
-            yield Finding("deprecated", "warning", setting.spot, setting.name, text, places)
+            both = (Evidence("it says so", read.deprecation), Evidence("read", read.spot))
+            yield Finding("deprecated", "warning", setting.spot, setting.name, text, both)
+
+
+def _renamed(facts: Facts, setting: Setting, reads: list[NodeRead]) -> Renamed | None:
+    """The new name of a parameter, if no code but that of old names reads it."""
+    end = last_part(setting.name)
+    for node in facts.owners(setting.name):
+        found = node.renamed.get(end)
+        if found is not None:
+            others = [one for one in reads if one.is_exact and one.spot.path != found.reader]
+            return None if others else found
+    return None
+
+
+def _called_old(facts: Facts, setting: Setting, reads: list[NodeRead]) -> Declared | None:
+    """The declaration of a value that calls it deprecated, if all that could be meant do."""
+    fitting = declared_for(facts, setting, reads)
+    old = [one for one in fitting if _OLD.search(one.description)]
+    return old[0] if old and len(old) == len(fitting) else None

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from pytpc.base.closest import closest
 from pytpc.base.wording import listed, plain
-from pytpc.lint.facts import Facts, Node, NodeRead, Setting, Unjudged, last_part, own_part
+from pytpc.lint.facts import Facts, Node, NodeRead, Setting, Unjudged, above, last_part, own_part
 from pytpc.lint.finding import Evidence, Finding, Spot
 from pytpc.static.parameters import DYNAMIC
 
@@ -23,8 +23,11 @@ _OF_ROS = frozenset(
 )
 _QOS = "qos_overrides"
 _MOST_NODES = 3
+# Of a whole robot; comparing each name with all of them takes long, and says little.
+_MOST_READS = 1000
 ANY = "a node puts the names of parameters together"
 NO_NODE = "no node of that namespace is started"
+ELSEWHERE = "another launch file starts the node of that namespace"
 TEXT = "the name stands in the sources, and what is done with it is not followed"
 
 
@@ -53,7 +56,7 @@ def unread(facts: Facts) -> Unread:
             used.add(setting.spot)
             continue
         concerned = _concerned(facts, setting)
-        why = why or _why_unjudged(setting, concerned)
+        why = why or _why_unjudged(facts, setting, concerned)
         if why:
             reasons[why].add(setting.name)
             used.add(setting.spot)
@@ -83,10 +86,12 @@ def _concerned(facts: Facts, setting: Setting) -> list[Node]:
     return below or list(facts.nodes)
 
 
-def _why_unjudged(setting: Setting, concerned: list[Node]) -> str:
+def _why_unjudged(facts: Facts, setting: Setting, concerned: list[Node]) -> str:
     """Why it is not known whether a value is read; empty where it is known."""
     if not concerned:
         return NO_NODE
+    if not facts.owners(setting.name) and not facts.elsewhere.isdisjoint(above(setting.name)):
+        return ELSEWHERE
     unknown = next((node for node in concerned if node.unjudged), None)
     if unknown is not None:
         return unknown.unjudged
@@ -116,12 +121,15 @@ def _finding(facts: Facts, setting: Setting, concerned: list[Node]) -> Finding:
 def _meant(facts: Facts, setting: Setting, concerned: list[Node]) -> list[NodeRead]:
     """The reads that were most likely meant: of the same name elsewhere, or of one like it."""
     end = last_part(setting.name)
-    mine = [read for node in concerned for read in node.reads]
-    others = [read for node in facts.nodes if node not in concerned for read in node.reads]
-    same = _once(read for read in mine if last_part(read.name) == end)
-    same = same or _once(read for read in others if last_part(read.name) == end and read.is_exact)
+    names = {node.name for node in concerned}
+    alike = facts.reads_by_end.get(end, ())
+    same = _once(read for node, read in alike if node.name in names)
+    same = same or _once(read for _, read in alike if read.is_exact)
     if same:
         return same
+    mine = [read for node in concerned for read in node.reads]
+    if len(mine) > _MOST_READS:
+        return []
     unset = {read.name: read for read in mine if not facts.is_set(read.name) and not read.is_table}
     return [unset[name] for name in closest(setting.name, unset)]
 

@@ -47,7 +47,8 @@ def _shown(value: object) -> str:
 def _fault(read: NodeRead, value: object) -> str:
     """What happens where a call reads a value of a wrong type; empty where it takes it."""
     given, wanted = type_of(value), _wanted(read)
-    if read.is_table or not wanted or given in (wanted, "null", "binary"):
+    is_taken = read.is_table or read.is_converted or not wanted
+    if is_taken or given in (wanted, "null", "binary"):
         return ""
     is_compound = given in ("list", "map")
     called, needs = _a(given), _a(wanted)
@@ -60,7 +61,9 @@ def _fault(read: NodeRead, value: object) -> str:
         is_other = wanted == "int" and value != rounded
         return f"a double, and the node rounds it to {rounded}" if is_other else ""
     if _is_python(read):
-        return f"{called}, and the node expects {needs} as its default is"
+        # There, 0 and 1 are as good as false and true.
+        is_flag = "string" not in (given, wanted) and value in (0, 1)
+        return "" if is_flag else f"{called}, and the node expects {needs} as its default is"
     unset = "" if read.default is None else f" ({shown_value(read.default)})"
     return f"{called}: the node reads {needs}, so it takes its default{unset}"
 
@@ -106,19 +109,11 @@ def _is_python(read: NodeRead) -> bool:
 
 def out_of_range(facts: Facts) -> Iterator[Finding]:
     """Values outside of what dynamic_reconfigure declares for them."""
-    by_name: dict[str, list[Declared]] = {}
-    for one in facts.declared:
-        by_name.setdefault(one.parameter, []).append(one)
     for setting in facts.settings:
         value = setting.value
         if isinstance(value, bool) or not isinstance(value, int | float | str):
             continue
-        reads = [read for _, read in facts.readers(setting.name) if read.is_reconfigured]
-        fitting = [
-            one
-            for one in by_name.get(own_part(setting.name), ())
-            if any(_is_below(read.spot.path, one.package) for read in reads)
-        ]
+        fitting = declared_for(facts, setting, [read for _, read in facts.readers(setting.name)])
         if not fitting or any(_holds(one, value) for one in fitting):
             continue
         one = fitting[0]
@@ -126,6 +121,16 @@ def out_of_range(facts: Facts) -> Iterator[Finding]:
         text = f"{plain(setting.name)} is {shown_value(value)}, {what}{_effect(one, setting)}"
         places = (Evidence("declared", spot_of(one.place)),)
         yield Finding("range", "warning", setting.spot, setting.name, text, places)
+
+
+def declared_for(facts: Facts, setting: Setting, reads: list[NodeRead]) -> list[Declared]:
+    """The declarations of a value, by those of its reads that are of dynamic_reconfigure."""
+    paths = [read.spot.path for read in reads if read.is_reconfigured]
+    return [
+        one
+        for one in facts.declared_by_name.get(own_part(setting.name), ())
+        if any(_is_below(path, one.package) for path in paths)
+    ]
 
 
 def _is_below(path: str, folder: str) -> bool:
@@ -160,7 +165,9 @@ def _effect(one: Declared, setting: Setting) -> str:
         return ""
     assert isinstance(setting.value, int | float)
     end = one.low if one.low is not None and setting.value < one.low else one.high
-    return f"; its server makes {show(end)} of it"
+    # It compares; NaN is neither below nor above.
+    is_kept = math.isnan(setting.value) or end is None
+    return "" if is_kept else f"; its server makes {show(end)} of it"
 
 
 def spot_of(place: str) -> Spot:

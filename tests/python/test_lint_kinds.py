@@ -1,12 +1,13 @@
 """The kinds of findings but for unread values: each with what must not be found."""
 
 import math
+from dataclasses import replace
 
 import pytest
 from lint_samples import FILE, SOURCE, facts, node, read, said, setting
 
 from pytpc.lint.angles import units_of_angles
-from pytpc.lint.facts import Crossing, Earlier, Facts, NodeRead
+from pytpc.lint.facts import Crossing, Earlier, Facts, NodeRead, Renamed
 from pytpc.lint.finding import Spot
 from pytpc.lint.limits import contradicting
 from pytpc.lint.recorded import never_crossed, without_effect
@@ -69,6 +70,29 @@ def test_deprecated():
     assert list(deprecated(facts({X: 1.0}, node(old, read(X))))) == []
 
 
+# nav_core's loadParameterWithDeprecation(nh, "path_distance_bias", "pdist_scale", 0.6) reads both.
+def test_an_old_name():
+    magic = read("/robot/guard/<dynamic>", spot=Spot("/ws/src/core/magic.h", 60))
+    new = Renamed("path_distance_bias", Spot(SOURCE, 169), "/ws/src/core/magic.h")
+    one = node(magic, renamed={"x": new})
+    [found] = deprecated(facts({X: 1.0}, one))
+    assert found.text == "/robot/guard/x is deprecated; its new name is path_distance_bias"
+    assert found.evidence == (("the node says so", Spot(SOURCE, 169)),)
+    # Another planner of the same node reads it under this name.
+    both = node(magic, read(X, 1.0), renamed={"x": new})
+    assert list(deprecated(facts({X: 1.0}, both))) == []
+    assert list(deprecated(facts({"/other/x": 1.0}, one))) == []
+
+
+def test_a_declaration_that_calls_its_field_deprecated():
+    reads = read(X, api="dynamic_reconfigure::Server::setCallback")
+    old = replace(declared("x", 0, 1), description="Deprecated, use limit")
+    [found] = deprecated(facts({X: 0.5}, node(reads), declared=[old]))
+    assert found.text == "the declaration of /robot/guard/x calls it deprecated"
+    other = declared("x", 0, 1, place="/ws/src/robot/cfg/Other.cfg:3")
+    assert list(deprecated(facts({X: 0.5}, node(reads), declared=[old, other]))) == []
+
+
 @pytest.mark.parametrize(
     ("value", "reads", "why"),
     [
@@ -101,6 +125,10 @@ def test_wrong_types(value: object, reads: NodeRead, why: str):
         ("a", read(X, api="rospy.get_param", type="")),
         ([1.0], read(X, type="std::vector<double>")),
         ({"p": 1}, read(X, type="XmlRpc::XmlRpcValue", is_table=True)),
+        # int(rospy.get_param('~x', '57600')), and flags that are numbers.
+        (115200, read(X, "57600", api="rospy.get_param", is_converted=True)),
+        (1, read(X, False, api="rospy.get_param")),
+        (True, read(X, 0, api="rospy.get_param")),
         (None, read(X, 0.7)),
     ],
 )
@@ -131,6 +159,15 @@ def test_out_of_range():
     choices = declared("x", None, None, choices=(("Fast", 1), ("Slow", 2)))
     [found] = out_of_range(facts({X: 3}, node(reads), declared=[choices]))
     assert found.text.endswith("outside of what is declared: 1 (Fast), 2 (Slow)")
+
+
+# A server of dynamic_reconfigure compares with both ends, and NaN is neither below nor above.
+def test_not_a_number_is_out_of_range_and_stays():
+    reads = read(X, api="dynamic_reconfigure::Server::setCallback")
+    for low, high in ((0.0, 1.0), (0.0, None), (None, 1.0)):
+        one = declared("x", low, high)
+        [found] = out_of_range(facts({X: math.nan}, node(reads), declared=[one]))
+        assert "its server makes" not in found.text
 
 
 @pytest.mark.parametrize(

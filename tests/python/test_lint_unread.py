@@ -50,6 +50,10 @@ def test_a_node_that_is_not_started_under_this_name():
         ("/robot/guard/min_distance", LIMIT),
         ("/robot/min_distance", read("/robot/min_distance", 0.5)),
         ("/robot/guard/a/b/x", read("/robot/guard/<dynamic>/x")),
+        # The part that is put together at run time may be empty.
+        ("/robot/guard/x", read("/robot/guard/<dynamic>/x")),
+        ("/robot/guard/rate", read("/<dynamic>/rate")),
+        ("/rate", read("/<dynamic>/rate")),
         ("/robot/guard/pid/p", read("/robot/guard/pid", is_table=True)),
         ("/robot/guard/limits.max", read("/robot/guard/limits", is_table=True, api="rclpy")),
         ("/use_sim_time", LIMIT),
@@ -65,6 +69,22 @@ def test_what_is_read(name: str, reads: NodeRead):
 def test_one_part_of_a_name_that_is_put_together_is_no_other_name():
     found = facts({"/robot/guard/left/y": 1.0}, node(read("/robot/guard/<dynamic>/x")))
     assert len(unread(found).findings) == 1
+
+
+# `param(prefix + "rate", ...)` with an empty prefix reads "rate", too.
+def test_a_name_with_a_prefix_that_may_be_empty():
+    found = facts({"/robot/guard/rate": 5}, node(read("/robot/guard/<dynamic>rate")))
+    assert unread(found).findings == []
+
+
+# The robot's launch file sets what the node of another launch file reads.
+def test_a_node_that_another_launch_file_starts():
+    values: dict[str, object] = {"/robot/arm/rate": 5, "/robot/leg/rate": 5}
+    found = facts(values, node(LIMIT), elsewhere=frozenset({"/robot/arm", "/robot/guard"}))
+    assert [line for line, _ in said(unread(found).findings)] == [2]
+    assert reasons(found) == {
+        "another launch file starts the node of that namespace": {"/robot/arm/rate"}
+    }
 
 
 def test_what_is_not_known():

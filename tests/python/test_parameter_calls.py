@@ -77,6 +77,16 @@ def test_cpp(package: Path, lineno: int, expected: CallText):
     assert found == expected
 
 
+def test_a_constructor_with_initialisers(tmp_path: Path):
+    file = tmp_path / "a.cpp"
+    file.write_text(
+        "Grid::Grid(Handle &nh)\n    : wall_(4),\n      hits_(4),\n      far_(2) {\n"
+        '  nh.param("radius", radius_, 0.3);\n}\n'
+    )
+    found = call_text(str(file), 5, "ros::NodeHandle::param", "Grid::Grid(Handle&)")
+    assert found.at_start
+
+
 def test_cpp_in_a_callback(package: Path):
     api, function = "ros::NodeHandle::getParam", "Guard::onScan()"
     assert call_text(f"{package}/guard.cpp", 22, api, function) == CallText()
@@ -112,6 +122,38 @@ def test_python(package: Path, lineno: int, expected: CallText):
     assert call_text(f"{package}/guard.py", lineno, "rospy.get_param", "") == expected
 
 
+OLD_NAMES = """\
+limit = rospy.get_param('~old_limit', None)
+if limit is not None:
+    rospy.logwarn('~old_limit is deprecated')
+omega = rospy.get_param('~omega', 1.0)
+rospy.logwarn('omega is obsolete')
+tilt = rospy.get_param('~tilt', 0.3)
+"""
+
+
+# The message in line 5 is about another name than the call in line 6.
+def test_a_message_about_another_name(tmp_path: Path):
+    (tmp_path / "a.py").write_text(OLD_NAMES)
+    lines = [call_text(f"{tmp_path}/a.py", n, "rospy.get_param", "").deprecation for n in (1, 4, 6)]
+    assert lines == [3, 5, None]
+    (tmp_path / "a.cpp").write_text(
+        'if (nh.hasParam("old")) {\n  nh.getParam("now", x_);\n  ROS_WARN("old is obsolete");\n}\n'
+    )
+    api = "ros::NodeHandle::getParam"
+    assert call_text(f"{tmp_path}/a.cpp", 2, api, "main()").deprecation is None
+
+
+# rosserial reads its rate so: "57600" and 57600 are the same to it.
+def test_what_is_converted(tmp_path: Path):
+    file = tmp_path / "a.py"
+    file.write_text(
+        "rate = int(rospy.get_param('~rate', '57600'))\nrun(rospy.get_param('~x', 1))\n"
+    )
+    assert call_text(str(file), 1, "rospy.get_param", "").is_converted
+    assert not call_text(str(file), 2, "rospy.get_param", "").is_converted
+
+
 def test_a_place_that_is_not_there(tmp_path: Path):
     assert call_text(f"{tmp_path}/gone.cpp", 3, "ros::NodeHandle::param", "main()") == CallText()
     assert call_text(f"{tmp_path}/gone.py", 3, "rospy.get_param", "") == CallText()
@@ -136,6 +178,29 @@ def test_texts_that_stand_beside_no_read(package: Path):
     assert not found.converts("til")
     assert found.turns("max_yaw")
     assert not found.turns("yaw")
+
+
+# `sim_time` is in the line of an angle, and is none.
+def test_what_stands_beside_an_angle(tmp_path: Path):
+    (tmp_path / "a.cpp").write_text("x += sim_time * cos(yaw_goal + max_yaw); y = sin(th_goal_);\n")
+    source_texts.cache_clear()
+    found = source_texts(str(tmp_path))
+    names = ("sim_time", "yaw_goal", "max_yaw", "th_goal")
+    assert [name for name in names if found.turns(name)] == ["th_goal"]
+
+
+def test_functions_of_old_names(tmp_path: Path):
+    (tmp_path / "magic.h").write_text(
+        "template <class T> T loadWithDeprecation(const NodeHandle& nh, const std::string now,\n"
+        "    const std::string old_name, const T& value) {\n"
+    )
+    (tmp_path / "a.cpp").write_text(
+        'x = loadWithDeprecation<double>(nh,\n  "bias", "scale", 0.6);\nlogDeprecated("bias");\n'
+    )
+    source_texts.cache_clear()
+    found = source_texts(str(tmp_path))
+    assert found.renamers == {"loadWithDeprecation": (1, f"{tmp_path}/magic.h")}
+    assert [(one.texts, one.lineno) for one in found.renamings] == [(("bias", "scale"), 1)]
 
 
 def test_code_that_reads_all(tmp_path: Path):

@@ -68,10 +68,13 @@ class _Config(ROSLaunchConfig):  # type: ignore[misc]
         super().__init__()
         self.settings: dict[str, list[dict[str, Any]]] = {}
         self.place_of: Callable[[str], dict[str, Any]] = lambda _key: {"tag": "unknown"}
+        self.replaced: dict[str, list[dict[str, Any]]] = {}
 
     def add_param(self, p: _Loaded, filename: str | None = None, verbose: bool = True) -> None:
         super().add_param(p, filename=filename, verbose=verbose)
-        self.settings.setdefault(p.key, []).append({**self.place_of(p.key), "value": p.value})
+        earlier = self.replaced.pop(p.key, [])
+        place = {**self.place_of(p.key), "value": p.value}
+        self.settings.setdefault(p.key, []).extend([*earlier, place])
 
 
 class _Tracer(XmlLoader):  # type: ignore[misc]
@@ -88,6 +91,8 @@ class _Tracer(XmlLoader):  # type: ignore[misc]
         self._via: list[str] = []
         self._tag_place: dict[str, Any] | None = None
         self._node_params: dict[str, dict[str, Any]] = {}
+        self._in_node = False
+        self._config = config
         config.place_of = self._place_of
 
     def resolve_args(self, args: str, context: _Context) -> str:
@@ -138,7 +143,12 @@ class _Tracer(XmlLoader):  # type: ignore[misc]
             self._tag_place = None
         if param is not None:
             param.tpc_place = place
-            self._node_params[canonicalize_name(context.ns + param.key.lstrip("~"))] = place
+            key = canonicalize_name(context.ns + param.key.lstrip("~"))
+            if self._in_node and key in self._node_params:
+                # Of two in one <node>, roslaunch forgets the first.
+                self._config.replaced.setdefault(key, []).append(self._node_params[key])
+            place["value"] = param.value
+            self._node_params[key] = place
         return param
 
     def param_value(
@@ -196,8 +206,14 @@ class _Tracer(XmlLoader):  # type: ignore[misc]
             for param in context.params
             if hasattr(param, "tpc_place")
         }
-        node = super()._node_tag(tag, context, *args, **options)
+        self._in_node = True
+        self._config.replaced = {}
+        try:
+            node = super()._node_tag(tag, context, *args, **options)
+        finally:
+            self._in_node = False
         self._node_params = {}
+        self._config.replaced = {}
         if node is not None:
             full = canonicalize_name(ns_join(node.namespace, node.name))
             here = self._here(tag, context)
