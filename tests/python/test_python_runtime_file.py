@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from patience import PATIENCE_S
 from pytpc.ingest.reading import read
 from pytpc.recording.mission import Recording
 
@@ -40,7 +41,7 @@ def run(folder: Path, program: str, **env: str) -> subprocess.CompletedProcess[s
         capture_output=True,
         text=True,
         check=False,
-        timeout=60,
+        timeout=PATIENCE_S,
     )
 
 

@@ -17,12 +17,14 @@ from pytpc.ingest.reading import read
 
 # 3 s, so a file has 0.375 s.
 SHORT = {"TPC_RING": "0.05"}
+# A file is left when it has 8 MiB, which is 260,000 reports.
+BYTES = {"TPC_RING": "10", "TPC_RING_BUDGET": "64"}
 # A file is left when it has 1 MiB, which is 32,000 reports.
 SMALL = {"TPC_RING": "10", "TPC_RING_BUDGET": "4"}
 # Goes on until the process writes its file with this number.
 TURNED = """\
 def turned(count):
-    until = time.monotonic() + 60
+    until = time.monotonic() + 600
     while RUNTIME.file is None or RUNTIME.file._segment < count:
         assert time.monotonic() < until
         yield
@@ -55,8 +57,7 @@ def test_killed_while_it_turns(tmp_path, seed):
         print(count, flush=True)
         os.kill(os.getpid(), 9)
         """,
-        **{**SHORT, "TPC_RING": "1"} if seed % 2 else SHORT,
-        TPC_RING_BUDGET="4096",
+        **(BYTES if seed % 2 else SHORT),
     )
     assert done.returncode == -signal.SIGKILL, done.stderr
     assert len(files(tmp_path)) >= 2
@@ -114,7 +115,7 @@ def test_memory_of_old_files_is_given_back(tmp_path):
             for number in range(1000):
                 over(one, number, 0)
             time.sleep(0.002)
-        until = time.monotonic() + 60
+        until = time.monotonic() + 600
         def gone():
             with open("/proc/self/maps") as maps:
                 lines = [line.split() for line in maps if "(deleted)" in line and ".tpc" in line]
