@@ -214,7 +214,7 @@ def _every_second(pairs: Int64s) -> Int64s:
     """Of pairs of neighbours, by the place of the first: every second one in a chain of them."""
     begins = np.concatenate([[True], pairs[1:] != pairs[:-1] + 1])[: pairs.size]
     begin = np.maximum.accumulate(np.where(begins, np.arange(pairs.size), 0))
-    return pairs[(np.arange(pairs.size) - begin) % 2 == 0]
+    return np.asarray(pairs[(np.arange(pairs.size) - begin) % 2 == 0])
 
 
 def clock_notes(channels: list[Channel]) -> Iterator[str]:
