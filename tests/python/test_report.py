@@ -598,7 +598,7 @@ def test_doubted_types_are_a_fact(tmp_path):
 # Low scores and high ranks are suspicious: both are explained on the card, in no table.
 def test_score_and_rank_are_on_the_card(page_text):
     heads = re.findall('<th[^>]*scope="col">([^<]*)</th>', page_text)
-    assert set(heads) == {"#", "Parameter", "Value", "Smallest change", "Compared at"}
+    assert set(heads) == {"#", "Parameter", "Value", "Smallest change", "Compared at", "Drift"}
     text = " ".join("".join(Page(page_text).text).split())
     assert re.search(r"At this markscore [0-9.e-]+ of type I, rank 1\.00, distance 1", text)
     assert 'aria-describedby="term-score"' in page_text

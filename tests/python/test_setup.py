@@ -118,7 +118,7 @@ def test_setup_refuses_a_level_that_it_does_not_know():
         [ROOT / "tools/setup", "everything"], capture_output=True, text=True, check=False
     )
     assert ran.returncode == 1
-    assert ran.stderr == "setup: error: no level 'everything': user, demo, test or ros2\n"
+    assert ran.stderr == "setup: error: no level 'everything': user, demo, test, docs or ros2\n"
 
 
 # Without a node in C++, the demonstration on ROS 2 needs neither a compiler nor ROS 1.

@@ -39,7 +39,12 @@ MISTAKES = [
     ("suggest today --value 3", 2, "--value needs a PARAMETER"),
     ("record ws -o out", 2, "give both WORKSPACE and LAUNCH (a file, or PACKAGE and FILE); for a robot that runs already: pytpc record --static WORKSPACE"),
     ("record -o today", 1, "today: already has a recording; give another folder"),
-    ("export today/static.json", 2, "give --sarif FILE, --html FILE or both"),
+    (
+        "export today/static.json",
+        2,
+        "give --sarif FILE, --html FILE or both; for a recording --mcap, --foxglove, --plotjuggler,"
+        " --rerun, --csv or --parquet",
+    ),
     ("apply p.yaml limit", 2, "give TARGET PARAMETER VALUE, or --live PARAMETER VALUE"),
     ("apply p.yaml limit 1 rate=3", 2, "'rate=3' is not NAME:=VALUE"),
     # Recordings.
