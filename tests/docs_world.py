@@ -177,6 +177,7 @@ class World:
         (home / "tree/src/tool.cpp").write_text("int main() { return 0; }\n")
         (home / ".config/fish/completions").mkdir(parents=True)
         text = "\n".join(command.text for command in commands)
+        self._prepare_sources(text)
         # On this page the robot is mended: its own files must have set the values.
         if "pytpc fix today" in text:
             shutil.copytree(home / "mission", home / "today", symlinks=True)
@@ -186,6 +187,17 @@ class World:
                 recorded(home / name)
             for name in ("today", "tomorrow", "missions/first", "missions/second"):
                 recorded(home / name, home / "marks.csv")
+        if "pytpc rank monday tuesday" in text:
+            for name in ("monday", "tuesday"):
+                shutil.copy(home / "marks.csv", home / name)
+        for name in ("monday", "tuesday"):
+            shutil.copytree(self._kept / "yesterday", home / "out" / name, symlinks=True)
+        if not re.search(r"record\b.* -[oO] out/today", text):
+            recorded(home / "out/today", home / "marks.csv")
+
+    def _prepare_sources(self, text: str) -> None:
+        """Give the robot the faults, and the edits, of which the pages with these commands speak."""
+        home, robot = self.home, self.home / "ws/src/my_robot"
         if "unit.bc" in text:
             self._said("clang-19 -c -emit-llvm -xc /dev/null -o unit.bc")
         if "pytpc lint" in text:
@@ -196,13 +208,6 @@ class World:
             for old, new in EDITS.items():
                 _replace(robot / "scripts/mission.py", old, new)
             self._said("pytpc build ws")
-        if "pytpc rank monday tuesday" in text:
-            for name in ("monday", "tuesday"):
-                shutil.copy(home / "marks.csv", home / name)
-        for name in ("monday", "tuesday"):
-            shutil.copytree(self._kept / "yesterday", home / "out" / name, symlinks=True)
-        if not re.search(r"record\b.* -[oO] out/today", text):
-            recorded(home / "out/today", home / "marks.csv")
 
 
 def recorded(folder: Path, marks: Path | None = None) -> None:
