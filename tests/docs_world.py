@@ -82,7 +82,7 @@ HOW: dict[str, Long | Keys] = {
     r"pytpc record (?!-)": Long(r"[1-9]\d* reports,", alone=True),
     r"pytpc record": Long("press Ctrl-C to stop"),
     r"pytpc run --static": Long("flying", alone=True),
-    r"pytpc mark": Keys((("q quit", "2"), ("marked: type II", "q"))),
+    r"pytpc mark ": Keys((("q quit", "2"), ("marked: type II", "q"))),
     r"pytpc run": MARK_AND_END,
     r"pytpc watch(?!.*--once)": MARK_AND_END,
     r"pytpc fix(?!.*--(undo|command|json|yes))": Keys((("Try it:", "y\r"),)),
@@ -196,7 +196,7 @@ class World:
             recorded(home / "out/today", home / "marks.csv")
 
     def _prepare_sources(self, text: str) -> None:
-        """Give the robot the faults, and the edits, of which the pages with these commands speak."""
+        """Give the robot the faults and edits of which the pages with these commands speak."""
         home, robot = self.home, self.home / "ws/src/my_robot"
         if "unit.bc" in text:
             self._said("clang-19 -c -emit-llvm -xc /dev/null -o unit.bc")
