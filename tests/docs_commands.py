@@ -1,17 +1,24 @@
-"""The command lines that the pages show, and which of them no test can run."""
+"""The command lines that the pages show, and which of them no test can run.
+
+``python tests/docs_commands.py`` counts them, page by page.
+"""
 
 from __future__ import annotations
 
 import re
 import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
 import tomllib
-from check_docs import SHELLS, Page
 
 ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT / "tools"))
+
+from check_docs import SHELLS, Page  # noqa: E402
+
 NOT_RUN = ROOT / "tests/docs/not_run.toml"
 PATTERNS = ["README.md", "CONTRIBUTING.md", "docs/*.md"]
 # A block without a language is a shell's if its first line begins with one of these; else it shows
@@ -116,3 +123,20 @@ def not_run() -> dict[str, dict[str, str]]:
     """Of each page the commands that no test runs, with the reason."""
     with NOT_RUN.open("rb") as stream:
         return tomllib.load(stream)
+
+
+def main() -> None:
+    """Print of each page how many commands are run, and how many are listed."""
+    run_all = listed_all = 0
+    for page in pages():
+        reasons = not_run().get(page, {})
+        found = [each.text for each in commands(page) if isinstance(each, Command)]
+        listed = sum(text in reasons for text in found)
+        if found:
+            print(f"{page}: {len(found) - listed} run, {listed} listed")
+        run_all, listed_all = run_all + len(found) - listed, listed_all + listed
+    print(f"FIGURE docs commands: {run_all} run, {listed_all} listed in {NOT_RUN.name}")
+
+
+if __name__ == "__main__":
+    main()

@@ -28,6 +28,13 @@ from terminals import Terminal
 ROOT = project_root()
 PATIENCE_S = 180.0
 RIGHT, WRONG = "min_coverage_limit: 0.035", "min_coverage_limit: 0.058"
+# A later version of the robot: of its comparisons one is changed, one gone and one new.
+EDITS = {
+    "coverage > min_coverage_limit": "coverage >= min_coverage_limit",
+    '"~min_coverage_limit", 0.035': '"~min_coverage_limit", 0.05',
+    "if height > max_height": 'if len(faces) > rospy.get_param("~max_faces")',
+    "height = 1.6": "faces = []; height = 1.6",
+}
 TREE = """cmake_minimum_required(VERSION 3.10)
 project(tool CXX)
 add_executable(tool src/tool.cpp)
@@ -38,6 +45,8 @@ NAMES = {
     r"\bWS\b": "ws",
     r"\bWORKSPACE\b": "uav.json",
     r"DIR\.\.\. -o FOLDER\b": "tree -o survey",
+    "<this repository>": str(ROOT),
+    r"\b192\.168\.1\.20:": "127.0.0.1:",
     "<prefix>": str(ROOT / "build/install"),
 }
 
@@ -46,10 +55,12 @@ class Long(NamedTuple):
     """A command that runs until Ctrl-C: ``ready`` is in what it says once others can go on.
 
     Ctrl-C is pressed when the block ends, or at once if the command needs no other (``alone``).
+    ``status`` is the one that it ends with then.
     """
 
     ready: str
     alone: bool = False
+    status: int = 0
 
 
 class Keys(NamedTuple):
@@ -64,16 +75,27 @@ HOW: dict[str, Long | Keys] = {
     r"roscore": Long("started core service"),
     r"roslaunch": Long(r"process\[mission-\d+\]: started"),
     r"rosbag record": Long("Subscribing to"),
+    r"pytpc live": Long(r"http://\S+/\?token=", alone=True),
+    r"pytpc stream (?!MISSION|mission)": Long("streaming from", alone=True, status=130),
+    "rerun": Long("Listening for gRPC", status=130),
+    r"pytpc record ws mission": Long(r"[1-9]\d* marks?", alone=True),
     r"pytpc record (?!-)": Long(r"[1-9]\d* reports,", alone=True),
     r"pytpc record": Long("press Ctrl-C to stop"),
     r"pytpc run --static": Long("flying", alone=True),
+    r"pytpc mark ": Keys((("q quit", "2"), ("marked: type II", "q"))),
     r"pytpc run": MARK_AND_END,
     r"pytpc watch(?!.*--once)": MARK_AND_END,
     r"pytpc fix(?!.*--(undo|command|json|yes))": Keys((("Try it:", "y\r"),)),
 }
 # A block that asks a graph, and starts none, is read while the robot runs.
-ASKS_A_GRAPH = r"rosbag record|rosparam|rostopic|pytpc (sink|relay|watch(?!.*--once)|apply --live)"
+ASKS_A_GRAPH = (
+    r"rosbag record|rosparam|rostopic|pytpc (sink|relay|watch(?!.*--once)|apply --live|live|stream)"
+)
+BESIDE = "beside"
+ASKS_A_RECORDING = r"pytpc (watch|live|stream)"
 STARTS_A_GRAPH = r"roscore|roslaunch|ros2 launch"
+# Commands that find what they are told to fail on: their status is 1.
+BREAKS_A_RULE = r"pytpc (lint|compare) .*--fail-on"
 HELP = """\
 A command of the docs does not do what its page says. Mend the page; or, if the page is right, give
 the command what it needs in tests/docs_world.py (a file in `World.prepare`, a line in `HOW` if it
@@ -143,19 +165,19 @@ class World:
         shutil.copytree(robot / "config", home / "config")
         shutil.copy(robot / "launch/robot.launch", home)
         node = (robot / "scripts/mission.py").read_text()
-        started = 'init_node("node"); print("flying", flush=True)'
-        (home / "node.py").write_text(node.replace('init_node("mission")', started))
+        # rospy does not survive a Ctrl-C while it asks for a parameter.
+        started = 'print("flying", flush=True)\nbegun ='
+        (home / "node.py").write_text(node.replace("begun =", started))
         shutil.copy(ROOT / "tests/docs/params.yaml", home)
         shutil.copy(ROOT / "examples/recorded_mission/static.json", home / "uav.json")
         shutil.copy(home / "mission/mission.bag", home / "my.bag")
         (home / ".ros/tpc").mkdir(parents=True)
-        unit = ["clang-19", "-c", "-emit-llvm", "-xc", "/dev/null", "-o", home / "unit.bc"]
-        subprocess.run(unit, check=True)
         (home / "tree/src").mkdir(parents=True)
         (home / "tree/CMakeLists.txt").write_text(TREE)
         (home / "tree/src/tool.cpp").write_text("int main() { return 0; }\n")
         (home / ".config/fish/completions").mkdir(parents=True)
         text = "\n".join(command.text for command in commands)
+        self._prepare_sources(text)
         # On this page the robot is mended: its own files must have set the values.
         if "pytpc fix today" in text:
             shutil.copytree(home / "mission", home / "today", symlinks=True)
@@ -172,6 +194,20 @@ class World:
             shutil.copytree(self._kept / "yesterday", home / "out" / name, symlinks=True)
         if not re.search(r"record\b.* -[oO] out/today", text):
             recorded(home / "out/today", home / "marks.csv")
+
+    def _prepare_sources(self, text: str) -> None:
+        """Give the robot the faults and edits of which the pages with these commands speak."""
+        home, robot = self.home, self.home / "ws/src/my_robot"
+        if "unit.bc" in text:
+            self._said("clang-19 -c -emit-llvm -xc /dev/null -o unit.bc")
+        if "pytpc lint" in text:
+            _replace(robot / "config/params.yaml", WRONG, f"{WRONG}\n  max_coverage_limit: 0.05")
+            _replace(robot / "config/params.yaml", "max_height", "max_hight")
+        if "pytpc compare base.json" in text:
+            shutil.copy(home / "ws/.tpc/static.json", home / "base.json")
+            for old, new in EDITS.items():
+                _replace(robot / "scripts/mission.py", old, new)
+            self._said("pytpc build ws")
 
 
 def recorded(folder: Path, marks: Path | None = None) -> None:
@@ -198,7 +234,7 @@ class Reader:
     def __init__(self, world: World) -> None:
         self._world = world
         self._before = "true"
-        self._running: list[tuple[str, Terminal]] = []
+        self._running: list[tuple[str, Terminal, int]] = []
         self._said: list[str] = []
 
     def __enter__(self) -> Reader:
@@ -217,14 +253,16 @@ class Reader:
         texts = [spelt(command.text) for command in block]
         # Each section begins anew: `record` refuses a folder that has a recording.
         for again in re.findall(
-            r"(?:pytpc record -o|rosbag record -O) (out/\w+)", "\n".join(texts)
+            r"(?:pytpc (?:record|keep)\b.* -o|rosbag record -O) (out/\w+)", "\n".join(texts)
         ):
             shutil.rmtree(self._world.home / again, ignore_errors=True)
         starts = any(re.search(BEGIN + STARTS_A_GRAPH, text) for text in texts)
         if not starts and any(re.search(BEGIN + ASKS_A_GRAPH, text) for text in texts):
             self._start('eval "$(pytpc env --setup ws)"; roslaunch my_robot robot.launch')
-            if any(re.search("pytpc watch", text) for text in texts):
-                self._start("pytpc record -o beside --static ws")
+            if any(re.search(BEGIN + ASKS_A_RECORDING, text) for text in texts):
+                self._start(f"pytpc record -o {BESIDE} --static ws")
+            if any("--rerun" in text for text in texts):
+                self._start("rerun --serve-grpc --bind 127.0.0.1")
         for command, text in zip(block, texts, strict=True):
             try:
                 self._type(text)
@@ -232,6 +270,7 @@ class Reader:
                 raise AssertionError(f"{command.place}: {error}\n{HELP}") from None
         while self._running:
             self._interrupt()
+        shutil.rmtree(self._world.home / BESIDE, ignore_errors=True)
         check_output(block[0].output, "\n".join(self._said))
 
     def _type(self, text: str) -> None:
@@ -245,7 +284,7 @@ class Reader:
             for wanted, keys in how.presses if how else ():
                 await_text(terminal, wanted)
                 terminal.press(keys)
-            self._end(text, terminal)
+            self._end(text, terminal, int(re.search(BREAKS_A_RULE, text) is not None))
         if re.match(r"(eval|source|\.|export|cd) [^;&|]*$", text):
             self._before += f"; {text}"
 
@@ -253,19 +292,20 @@ class Reader:
         how = next(HOW[each] for each in HOW if re.search(BEGIN + each, text))
         assert isinstance(how, Long)
         terminal = self._terminal(text)
-        self._running.append((text, terminal))
+        self._running.append((text, terminal, how.status))
         await_text(terminal, how.ready)
 
     def _interrupt(self) -> None:
-        text, terminal = self._running.pop()
+        text, terminal, status = self._running.pop()
         with terminal:
             terminal.press("\x03")
-            self._end(text, terminal)
+            self._end(text, terminal, status)
 
-    def _end(self, text: str, terminal: Terminal) -> None:
+    def _end(self, text: str, terminal: Terminal, wanted: int) -> None:
         status = terminal.wait(PATIENCE_S)
-        assert status == 0, f"{text}: status {status}\n{said(terminal)}"
-        self._said += terminal.text.replace("\r", "").splitlines()
+        assert status == wanted, f"{text}: status {status}\n{said(terminal)}"
+        # A line of progress, which only a slow machine shows, ends with a \r.
+        self._said += re.sub(r"\r+\n?", "\n", terminal.text).splitlines()
 
     def _terminal(self, text: str) -> Terminal:
         words = ["env", "-i", *(f"{name}={value}" for name, value in self._world.env.items())]

@@ -20,7 +20,8 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import draw_answer
@@ -33,6 +34,8 @@ ROOT = Path(__file__).resolve().parents[1]
 IMAGES = ROOT / "docs/images"
 COLUMNS, LINES = 120, 30
 MISSION = "type2_min_coverage_limit"
+# Where the checkout of the reader is, in the pictures of a page that shows paths.
+CHECKOUT = "/home/ana/tpc"
 
 
 def main() -> None:
@@ -95,12 +98,27 @@ def watch(path: Path, _demo: Path) -> None:
 
 def report(path: Path, demo: Path) -> None:
     """Draw the page of the mission of type II as it opens."""
-    path.write_bytes(draw_answer.page_picture(demo / "report.html", MISSION))
+    with _page(demo) as page:
+        path.write_bytes(draw_answer.page_picture(page, MISSION))
 
 
 def answer(path: Path, demo: Path) -> None:
     """Draw its answer alone."""
-    path.write_bytes(draw_answer.picture(demo / "report.html", MISSION))
+    with _page(demo) as page:
+        path.write_bytes(draw_answer.picture(page, MISSION))
+
+
+@contextmanager
+def _page(demo: Path) -> Iterator[Path]:
+    """The page as it would be in the reader's checkout."""
+    text = (demo / "report.html").read_text(encoding="utf-8")
+    root = str(demo.resolve().parents[1])
+    for slash in ("/", "/<wbr>"):
+        text = text.replace(root.replace("/", slash), CHECKOUT.replace("/", slash))
+    with tempfile.TemporaryDirectory() as folder:
+        page = Path(folder, "report.html")
+        page.write_text(text, encoding="utf-8")
+        yield page
 
 
 def study(path: Path, demo: Path) -> None:
