@@ -186,7 +186,7 @@ class Robot:
                 if 0 <= at < len(call.texts):
                     new = call.texts[1 if at == 0 else 0]
                     spot = Spot(call.path, call.lineno)
-                    found[call.texts[at]] = Renamed(new, spot, reader)
+                    found[call.texts[at]] = Renamed(new, spot, reader, call.namespace)
         return found
 
     def _processes(

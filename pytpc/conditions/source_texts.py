@@ -45,12 +45,17 @@ _FIRST_LINE = 200
 
 
 class Renaming(NamedTuple):
-    """A call of a function of old names: the texts that it is given, and its place."""
+    """A call of a function of old names: the texts that it is given, and its place.
+
+    ``namespace`` is the last part of that of the handle that it is given, as
+    ``NodeHandle nh("~/planner")`` before it says; empty where it is not known.
+    """
 
     function: str
     texts: tuple[str, ...]
     path: str
     lineno: int
+    namespace: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,12 +145,22 @@ def _add_renamings(
         texts = tuple(re.findall(r'"([\w~/.]+)"', given))
         if len(texts) > 1:
             lineno = text.count("\n", 0, found.start()) + 1
-            renamings.append(Renaming(name, texts, path, lineno))
+            handle = given.partition(",")[0].strip()
+            namespace = _namespace_of(handle, text[: found.start()])
+            renamings.append(Renaming(name, texts, path, lineno, namespace))
             continue
         strings = [one for one in given.split(",") if re.search(r"\bstring\b|\bchar\b", one)]
         old = [number for number, one in enumerate(strings) if _OLD.search(one)]
         if len(strings) > 1 and len(old) == 1:
             renamers[name] = old[0], path
+
+
+def _namespace_of(handle: str, before: str) -> str:
+    """The last part of the namespace with which a handle was made last; empty if not known."""
+    if not re.fullmatch(r"\w+", handle):
+        return ""
+    made = re.findall(rf'\bNodeHandle\s+{handle}\s*[({{]\s*(?:"([\w~/]*)"\s*[)}}])?', before)
+    return _last(made[-1]) if made else ""
 
 
 def _handed(line: str) -> Iterator[str]:

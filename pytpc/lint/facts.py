@@ -87,11 +87,15 @@ class NodeRead:
 
 
 class Renamed(NamedTuple):
-    """The new name of a parameter, where code says so, and the file with the code that reads it."""
+    """The new name of a parameter, where code says so, and the file with the code that reads it.
+
+    ``namespace`` is the last part of the namespace in which it is read, if that is known.
+    """
 
     new: str
     spot: Spot
     reader: str
+    namespace: str = ""
 
 
 @dataclass(frozen=True)

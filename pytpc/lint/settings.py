@@ -94,6 +94,10 @@ def _renamed(facts: Facts, setting: Setting, reads: list[NodeRead]) -> Renamed |
     end = last_part(setting.name)
     for node in facts.owners(setting.name):
         found = node.renamed.get(end)
+        folder = last_part(setting.name.rpartition("/")[0])
+        if found is not None and found.namespace not in ("", folder):
+            # It is the old name of another plugin's parameter.
+            return None
         if found is not None:
             others = [one for one in reads if one.is_exact and one.spot.path != found.reader]
             return None if others else found

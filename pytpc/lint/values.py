@@ -124,13 +124,16 @@ def out_of_range(facts: Facts) -> Iterator[Finding]:
 
 
 def declared_for(facts: Facts, setting: Setting, reads: list[NodeRead]) -> list[Declared]:
-    """The declarations of a value, by those of its reads that are of dynamic_reconfigure."""
-    paths = [read.spot.path for read in reads if read.is_reconfigured]
-    return [
-        one
-        for one in facts.declared_by_name.get(own_part(setting.name), ())
-        if any(_is_below(path, one.package) for path in paths)
-    ]
+    """The declarations of a value, by those of its reads that are of dynamic_reconfigure.
+
+    None, if one of these is of a package that declares it in a way that is not known: a function of
+    Python that several .cfg files call. Plugins of one node may have fields of the same name.
+    """
+    known = facts.declared_by_name.get(own_part(setting.name), ())
+    paths = {read.spot.path for read in reads if read.is_reconfigured}
+    if not all(any(_is_below(path, one.package) for one in known) for path in paths):
+        return []
+    return [one for one in known if any(_is_below(path, one.package) for path in paths)]
 
 
 def _is_below(path: str, folder: str) -> bool:

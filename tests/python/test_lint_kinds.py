@@ -82,6 +82,10 @@ def test_an_old_name():
     both = node(magic, read(X, 1.0), renamed={"x": new})
     assert list(deprecated(facts({X: 1.0}, both))) == []
     assert list(deprecated(facts({"/other/x": 1.0}, one))) == []
+    # The handle there is that of one planner, and the value is another's.
+    for namespace, count in (("guard", 1), ("planner", 0)):
+        named = node(magic, renamed={"x": new._replace(namespace=namespace)})
+        assert len(list(deprecated(facts({X: 1.0}, named)))) == count
 
 
 def test_a_declaration_that_calls_its_field_deprecated():
@@ -159,6 +163,17 @@ def test_out_of_range():
     choices = declared("x", None, None, choices=(("Fast", 1), ("Slow", 2)))
     [found] = out_of_range(facts({X: 3}, node(reads), declared=[choices]))
     assert found.text.endswith("outside of what is declared: 1 (Fast), 2 (Slow)")
+
+
+# The server of another plugin of the node has the field, too, from a declaration that is not known.
+def test_a_range_of_another_plugin_says_nothing():
+    api = "dynamic_reconfigure::Server::setCallback"
+    own, other = read(X, api=api), read(X, api=api, spot=Spot("/ws/src/arm/src/arm.cpp", 7))
+    arm = declared("x", 0, 9, package="/ws/src/arm")
+    inside = declared("x", 0, 1)
+    assert list(out_of_range(facts({X: 3.5}, node(own, other), declared=[inside]))) == []
+    assert list(out_of_range(facts({X: 3.5}, node(own, other), declared=[inside, arm]))) == []
+    assert len(list(out_of_range(facts({X: 10}, node(own, other), declared=[inside, arm])))) == 1
 
 
 # A server of dynamic_reconfigure compares with both ends, and NaN is neither below nor above.

@@ -196,11 +196,19 @@ def test_functions_of_old_names(tmp_path: Path):
     )
     (tmp_path / "a.cpp").write_text(
         'x = loadWithDeprecation<double>(nh,\n  "bias", "scale", 0.6);\nlogDeprecated("bias");\n'
+        'ros::NodeHandle blp("~/TrajectoryPlanner"), own("~/" + name);\n'
+        'y = loadWithDeprecation(blp, "now", "then", 1);\n'
+        'ros::NodeHandle own("~/" + name);\n'
+        'z = loadWithDeprecation(own, "new", "old", 1);\n'
     )
     source_texts.cache_clear()
     found = source_texts(str(tmp_path))
     assert found.renamers == {"loadWithDeprecation": (1, f"{tmp_path}/magic.h")}
-    assert [(one.texts, one.lineno) for one in found.renamings] == [(("bias", "scale"), 1)]
+    assert [(one.texts, one.lineno, one.namespace) for one in found.renamings] == [
+        (("bias", "scale"), 1, ""),
+        (("now", "then"), 5, "TrajectoryPlanner"),
+        (("new", "old"), 7, ""),
+    ]
 
 
 def test_code_that_reads_all(tmp_path: Path):
