@@ -78,11 +78,7 @@ def _from_thresholds(
 def _thresholds(recording: Recording, key: str, node: str) -> tuple[Int64s, Floats]:
     """The thresholds of a comparison in a node by time, those of summaries at their ends."""
     events, summaries = recording.events, recording.summaries
-    rows, others = events.rows_of(key), summaries.rows_of(key)
-    if node in events.nodes:
-        rows = rows[events.node[rows] == events.nodes.index(node)]
-    if node in summaries.nodes:
-        others = others[summaries.node[others] == summaries.nodes.index(node)]
+    rows, others = events.rows_in(key, node), summaries.rows_in(key, node)
     times = np.concatenate([events.time_ns[rows], summaries.end_ns[others]])
     thresholds = np.concatenate([events.thresh[rows], summaries.thresh[others]])
     order = np.argsort(times, kind="stable")

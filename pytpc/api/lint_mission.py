@@ -10,13 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from pytpc.api.missions import read_named, with_names_of
-from pytpc.base.columns import Int64s
 from pytpc.lint.facts import Crossing
 from pytpc.lint.finding import Spot
-from pytpc.recording.events import Events
 from pytpc.recording.mission import Recording
 from pytpc.recording.parameter_values import ParameterValues, SetValue, ValueChange
-from pytpc.recording.summaries import Summaries
 from pytpc.static.parameters import DYNAMIC, base_key, resolved
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.origins import START_FILE
@@ -98,7 +95,7 @@ def _add(side: _Side, recording: Recording, key: str, node: str) -> None:
     results: set[bool] = set()
     evaluations = 0
     table = recording.summaries
-    rows = _rows(table, key, node)
+    rows = table.rows_in(key, node)
     if len(rows):
         evaluations = int(table.count[rows].sum())
         results |= set(map(bool, table.res[rows]))
@@ -112,7 +109,7 @@ def _add(side: _Side, recording: Recording, key: str, node: str) -> None:
         )
         side.threshold = float(table.thresh[rows[-1]])
     events = recording.events
-    rows = _rows(events, key, node)
+    rows = events.rows_in(key, node)
     if len(rows):
         evaluations = max(evaluations, len(rows))
         results |= set(map(bool, events.res[rows]))
@@ -128,14 +125,6 @@ def _add(side: _Side, recording: Recording, key: str, node: str) -> None:
     side.evaluations += evaluations
     side.seconds += (max(times) - min(times)) / 1e9
     side.recordings += 1
-
-
-def _rows(table: Events | Summaries, key: str, node: str) -> Int64s:
-    """int64[n]: the rows of a key in a node."""
-    if key not in table.keys or node not in table.nodes:
-        return np.zeros(0, np.int64)
-    of_key = table.key == table.keys.index(key)
-    return np.flatnonzero(of_key & (table.node == table.nodes.index(node)))
 
 
 def _crossings(sides: dict[tuple[str, str], _Side]) -> Iterator[Crossing]:

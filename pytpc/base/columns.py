@@ -178,6 +178,14 @@ class WordTable:
         code = self._codes.get(key)
         return np.empty(0, dtype=np.int64) if code is None else self.by_key.rows(code)
 
+    def rows_in(self, key: str, node: str) -> Int64s:
+        """Those of ``rows_of`` that are of one node."""
+        rows = self.rows_of(key)
+        if node not in self.nodes:
+            return rows[:0]
+        codes: Int32s = getattr(self, "node")  # noqa: B009 - a field of the subclasses
+        return np.asarray(rows[codes[rows] == self.nodes.index(node)])
+
     def columns(self) -> Columns:
         """The columns by name, in the order of ``schema``."""
         return {name: getattr(self, name) for name in self.kinds}

@@ -18,7 +18,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pytpc.base.columns import Bools, Floats, Int64s
+from pytpc.base.columns import Bools, Floats
 from pytpc.diagnosis.ranking.result_streams import ResultStream, ResultStreams
 from pytpc.diagnosis.ranking.summarised import with_summarised
 from pytpc.diagnosis.results.behaviour import Behaviour, Distribution, Drift, OverMissions
@@ -27,9 +27,7 @@ from pytpc.diagnosis.scores.summary_scores import covered
 from pytpc.diagnosis.thresholds.margins import slope_of
 from pytpc.diagnosis.thresholds.units import is_text
 from pytpc.diagnosis.trend import trend_of
-from pytpc.recording.events import Events
 from pytpc.recording.mission import Recording
-from pytpc.recording.summaries import Summaries
 from pytpc.static.link_unit import Comparison
 from pytpc.static.parameters import base_key
 from pytpc.static.static_info import StaticInfo
@@ -105,20 +103,13 @@ def _counted(recording: Recording, key: str, node: str) -> tuple[int, int]:
     Summaries count the evaluations that are in the events as well, and turns beyond a cap.
     """
     events, summaries = recording.events, recording.summaries
-    rows, own = _rows(events, key, node), _rows(summaries, key, node)
+    rows, own = events.rows_in(key, node), summaries.rows_in(key, node)
     turned = int(events.flop[rows].sum())
     if not own.size:
         return rows.size, turned
     alone = rows[~covered(events, rows, summaries, own)]
     in_both = int(summaries.flops[own].sum()) + int(events.flop[alone].sum())
     return int(summaries.count[own].sum()) + alone.size, max(turned, in_both)
-
-
-def _rows(table: Events | Summaries, key: str, node: str) -> Int64s:
-    if node not in table.nodes:
-        return np.zeros(0, np.int64)
-    rows: Int64s = table.rows_of(key)
-    return np.asarray(rows[table.node[rows] == table.nodes.index(node)])
 
 
 def _behaviour(

@@ -98,11 +98,7 @@ def _reported(stream: ResultStream, key: str, begin_ns: int, recording: Recordin
     events = recording.events
     if not len(recording.summaries):
         return stream.changes
-    if stream.node not in events.nodes:
-        return stream.changes[:0]
-    rows = events.rows_of(key)
-    rows = rows[events.node[rows] == events.nodes.index(stream.node)]
-    times = (events.time_ns[rows] - begin_ns) / 1e9
+    times = (events.time_ns[events.rows_in(key, stream.node)] - begin_ns) / 1e9
     return stream.changes[np.isin(stream.changes, times)]
 
 

@@ -72,6 +72,15 @@ def test_the_values_of_parameters_are_those_of_their_thresholds() -> None:
     ]
 
 
+# /other reports the threshold 6, and the guard only a summary with 8.
+def test_the_values_of_a_node_with_summaries_alone_are_its_own() -> None:
+    recording = mission((1.5, 1, True, 5.0, 6.0, "/other"))
+    events = recording.events.take(recording.events.node == recording.events.nodes.index("/other"))
+    both = replace(recording, events=replace(events, nodes=("/other",), node=events.node * 0))
+    values = [(one.node, one.time_ns, one.number) for one in exported(both).values]
+    assert sorted(values) == [(NODE, ns(3.5), 4.0), ("/other", ns(1.5), 3.0)]
+
+
 def test_each_mark_is_judged_by_those_up_to_it() -> None:
     found = exported()
     assert [(one.time_ns, one.mark) for one in found.suspects] == [(ns(4.5), 1), (ns(5.0), 2)]

@@ -139,8 +139,7 @@ def _with_followed(
 
 def _last(events: Events, by: Decisive, time_ns: int) -> Evaluation:
     """The last evaluation of a comparison in a node up to a time, or its first."""
-    rows = events.rows_of(by.key)
-    rows = rows[events.node[rows] == events.nodes.index(by.node)]
+    rows = events.rows_in(by.key, by.node)
     return KeyRows(events, rows, events.time_ns[rows]).at(time_ns)
 
 
