@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import cast
 
 from pytpc.api.missions import Source, load_static, read_named, with_names_of
-from pytpc.base.wording import percent
 from pytpc.diagnosis.behaviour import behaviours, over_missions
 from pytpc.diagnosis.results.behaviour import Behaviour, OverMissions
 from pytpc.diagnosis.results.turn_groups import TurnGroup
-from pytpc.diagnosis.turn_groups import groups_of
+from pytpc.diagnosis.turn_groups import turn_groups_of
 from pytpc.present.answers import NotebookTable, TableSequence
+from pytpc.present.margin_tables import BehaviourTexts, median_text, short
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
 
@@ -38,7 +38,7 @@ class MissionMargins(TableSequence[Behaviour]):
         """Those of a recording that was read before."""
         named = with_names_of(recording, static_info, source)
         found = behaviours(recording, named)
-        return cls(recording.name, recording.seconds, found, groups_of(recording, named))
+        return cls(recording.name, recording.seconds, found, turn_groups_of(recording, named))
 
     @property
     def items(self) -> tuple[Behaviour, ...]:
@@ -49,18 +49,13 @@ class MissionMargins(TableSequence[Behaviour]):
         """A row for each comparison."""
         rows = tuple(
             (
-                one.parameter,
+                texts.parameter,
                 one.node,
-                "" if one.nearest is None else percent(one.nearest),
-                *(map(_short, one.margins) if one.margins is not None else [""] * 4),
-                percent(one.true_share),
-                str(one.turns),
-                str(one.near_misses),
-                "" if one.undecided is None else percent(one.undecided),
-                one.drift_text,
-                one.place,
+                texts.nearest,
+                *(map(short, one.margins) if one.margins is not None else [""] * 4),
+                *texts[4:],
             )
-            for one in self.behaviours
+            for one, texts in ((one, BehaviourTexts.of(one)) for one in self.behaviours)
         )
         headings = (
             "parameter", "node", "nearest", "least", "5 %", "median", "95 %", "true", "turns",
@@ -94,8 +89,8 @@ class Margins(TableSequence[MissionMargins]):
             (
                 one.parameter,
                 one.node,
-                *(_median(each) for each in one.behaviours[-_MISSIONS:]),
-                "" if one.trend is None else _short(one.trend),
+                *(median_text(each) for each in one.behaviours[-_MISSIONS:]),
+                "" if one.trend is None else short(one.trend),
                 one.place,
             )
             for one in self.over
@@ -103,14 +98,6 @@ class Margins(TableSequence[MissionMargins]):
         names = [one.name for one in last]
         headings = ("parameter", "node", *names, "trend", "compared at")
         return NotebookTable(headings, rows, frozenset(range(2, 3 + len(names))))
-
-
-def _short(value: float) -> str:
-    return f"{value:.3g}"
-
-
-def _median(one: Behaviour | None) -> str:
-    return "" if one is None or one.margins is None else _short(one.margins.median)
 
 
 def margins(

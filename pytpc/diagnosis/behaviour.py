@@ -21,7 +21,7 @@ import numpy as np
 from pytpc.base.columns import Bools, Floats
 from pytpc.diagnosis.ranking.result_streams import ResultStream, ResultStreams
 from pytpc.diagnosis.ranking.summarised import with_summarised
-from pytpc.diagnosis.results.behaviour import Behaviour, Distribution, Drift, OverMissions
+from pytpc.diagnosis.results.behaviour import NEAR, Behaviour, Distribution, Drift, OverMissions
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.diagnosis.scores.summary_scores import covered
 from pytpc.diagnosis.thresholds.margins import slope_of
@@ -31,9 +31,6 @@ from pytpc.recording.mission import Recording
 from pytpc.static.link_unit import Comparison
 from pytpc.static.parameters import base_key
 from pytpc.static.static_info import StaticInfo
-
-NEAR = 0.05
-"""The part of the range that is near to the threshold."""
 
 PARTS = 10
 """The drift is that of the medians of so many parts of the time."""

@@ -20,6 +20,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import exp, lgamma, log
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -68,7 +69,7 @@ class Turns:
     times: Floats
 
 
-def groups_of(recording: Recording, static_info: StaticInfo) -> tuple[TurnGroup, ...]:
+def turn_groups_of(recording: Recording, static_info: StaticInfo) -> tuple[TurnGroup, ...]:
     """The groups of a recording, with the names of its static information."""
     tpcs = Tpcs.of(static_info)
     streams = ResultStreams.of(with_summarised(recording), tpcs)
@@ -76,17 +77,24 @@ def groups_of(recording: Recording, static_info: StaticInfo) -> tuple[TurnGroup,
 
 
 def groups_in(streams: ResultStreams, tpcs: Tpcs, recording: Recording) -> tuple[TurnGroup, ...]:
-    """The groups of a recording's streams; noise at a threshold counts as one turn."""
-    turns = [
-        Turns(
-            tpcs.keys[one.code],
-            one.node,
-            tpcs.parameters[one.code],
-            _reported(one, tpcs.keys[one.code], streams.begin_ns, recording),
-        )
-        for one in streams.streams
-    ]
-    return turn_groups(turns, streams.seconds)
+    """The groups of a recording's streams, which are kept; noise at a threshold is one turn."""
+    known = _KEPT.get(streams)
+    if known is None:
+        turns = [
+            Turns(
+                tpcs.keys[one.code],
+                one.node,
+                tpcs.parameters[one.code],
+                _reported(one, tpcs.keys[one.code], streams.begin_ns, recording),
+            )
+            for one in streams.streams
+        ]
+        known = _KEPT[streams] = turn_groups(turns, streams.seconds)
+    return known
+
+
+# The verdict and the report's table ask for the same ones.
+_KEPT: WeakKeyDictionary[ResultStreams, tuple[TurnGroup, ...]] = WeakKeyDictionary()
 
 
 def _reported(stream: ResultStream, key: str, begin_ns: int, recording: Recording) -> Floats:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict
 from math import ceil
+from typing import NamedTuple
 
 from rich.console import Console, Group, RenderableType
 from rich.padding import Padding
@@ -66,7 +67,7 @@ def print_over_missions(
     cells = [
         [
             Text(plain(one.parameter)),
-            *(Text(_median(each)) for each in one.behaviours),
+            *(Text(median_text(each)) for each in one.behaviours),
             Text(_trend(one), style="bold" if one.zero_in is not None else ""),
             Text(plain(one.place)),
         ]
@@ -102,21 +103,43 @@ def _indented(part: RenderableType) -> RenderableType:
     return Padding(part, (0, 0, 0, 2), expand=False)
 
 
+class BehaviourTexts(NamedTuple):
+    """A comparison as texts; those that are empty have no value."""
+
+    parameter: str
+    nearest: str
+    median: str
+    spread: str
+    true: str
+    turns: str
+    misses: str
+    undecided: str
+    drift: str
+    place: str
+
+    @classmethod
+    def of(cls, one: Behaviour) -> BehaviourTexts:
+        """How every output says it."""
+        found = one.margins
+        return cls(
+            parameter=one.parameter,
+            nearest="" if one.nearest is None else percent(one.nearest),
+            median=median_text(one),
+            spread="" if found is None else f"{short(found.low)} to {short(found.high)}",
+            true=percent(one.true_share),
+            turns=f"{one.turns:,}",
+            misses="" if found is None else f"{one.near_misses:,}",
+            undecided="" if one.undecided is None else percent(one.undecided),
+            drift=one.drift_text,
+            place=one.place,
+        )
+
+
 def _cells(one: Behaviour) -> list[Text]:
-    found = one.margins
-    near = one.nearest is not None and one.nearest <= 0.05
-    return [
-        Text(plain(one.parameter)),
-        Text("" if one.nearest is None else percent(one.nearest), style="bold" if near else ""),
-        Text("" if found is None else short(found.median)),
-        Text("" if found is None else f"{short(found.low)} to {short(found.high)}"),
-        Text(percent(one.true_share)),
-        Text(f"{one.turns:,}"),
-        Text("" if found is None else f"{one.near_misses:,}"),
-        Text("" if one.undecided is None else percent(one.undecided)),
-        Text(one.drift_text),
-        Text(plain(one.place)),
-    ]
+    cells = [Text(plain(text)) for text in BehaviourTexts.of(one)]
+    if one.is_near:
+        cells[1].stylize("bold")
+    return cells
 
 
 def short(value: float) -> str:
@@ -124,7 +147,8 @@ def short(value: float) -> str:
     return f"{value:.3g}"
 
 
-def _median(one: Behaviour | None) -> str:
+def median_text(one: Behaviour | None) -> str:
+    """The median margin; empty if there is none."""
     return "" if one is None or one.margins is None else short(one.margins.median)
 
 

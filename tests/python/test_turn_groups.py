@@ -20,7 +20,7 @@ from pytpc.diagnosis.ranking.summarised import with_summarised
 from pytpc.diagnosis.results.advice import WhatIf
 from pytpc.diagnosis.results.turn_groups import SuspectGroup, group_of
 from pytpc.diagnosis.scores.score_tables import Tpcs
-from pytpc.diagnosis.turn_groups import MOST, Turns, groups_in, groups_of, part_of, turn_groups
+from pytpc.diagnosis.turn_groups import MOST, Turns, groups_in, part_of, turn_groups, turn_groups_of
 from pytpc.present.answers import Diagnosed
 from pytpc.present.as_json import diagnosis_json
 from pytpc.present.margin_tables import group_text
@@ -205,11 +205,11 @@ def test_turns_that_only_summaries_tell_have_no_time():
     silent = Recording("m", events([]), (), 0, ns(300), summaries=told.build())
     streams = ResultStreams.of(with_summarised(silent), Tpcs.of(static))
     assert [one.changes.size for one in streams.streams] == [2, 2]
-    assert groups_of(silent, static) == ()
+    assert turn_groups_of(silent, static) == ()
     # The same with the reports of the turns.
     rows = [(t + 0.1 * n, n, on, 2 * on, 1) for t, on in ((66, 1), (135, 0)) for n in (0, 1)]
     reported = replace(silent, events=events(rows))
-    assert [one.parameters for one in groups_of(reported, static)] == [("~a", "~b")]
+    assert [one.parameters for one in turn_groups_of(reported, static)] == [("~a", "~b")]
 
 
 def test_the_sentence_about_suspects():

@@ -7,6 +7,9 @@ from typing import NamedTuple
 
 from pytpc.static.link_unit import Comparison
 
+NEAR = 0.05
+"""A margin of at most this part of the range of all values and thresholds is near."""
+
 
 class Distribution(NamedTuple):
     """Of margins, weighted by time: the smallest, and what 5, 50 and 95 % of the time are below."""
@@ -42,8 +45,7 @@ class Behaviour:
         margins: |value - threshold|, in the parameter's ``unit`` if that is known; None for flags,
             text and values that are no numbers.
         unit: ``parameter``, or ``value`` if the arithmetic from the parameter has other numbers.
-        reach: the range of the values and thresholds in the same unit; a margin below a twentieth
-            of it counts as near.
+        reach: the range of the values and thresholds in the same unit.
         true_share: the share of its seconds in which its result was true.
         turns: how often its result changed.
         near_misses: how often the value came near to the threshold and left without turning.
@@ -82,6 +84,11 @@ class Behaviour:
         if self.margins is None or self.reach <= 0:
             return None
         return self.margins.least / self.reach
+
+    @property
+    def is_near(self) -> bool:
+        """Whether it came near to its threshold, or turned."""
+        return self.nearest is not None and self.nearest <= NEAR
 
     @property
     def drift_text(self) -> str:

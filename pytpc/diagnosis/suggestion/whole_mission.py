@@ -25,7 +25,7 @@ from pytpc.diagnosis.scores.score_tables import STEP_S, rank_curves
 from pytpc.diagnosis.suggestion.advise import advise, alternatives, declared_for
 from pytpc.diagnosis.suggestion.smallest_change import At, smallest_change
 from pytpc.diagnosis.thresholds.units import threshold_of
-from pytpc.diagnosis.turn_groups import groups_of
+from pytpc.diagnosis.turn_groups import turn_groups_of
 from pytpc.recording.events import Floats
 from pytpc.recording.faults import faults_of
 from pytpc.recording.marks import Mark
@@ -85,7 +85,7 @@ def answer_mission(
         warnings=tuple(faults_of(recording, static_info)),
         lead=lead,
         behaviours=tuple(sorted(behaviours(recording, static_info), key=by_nearest)),
-        groups=groups_of(recording, static_info),
+        groups=turn_groups_of(recording, static_info),
     )
 
 
