@@ -81,6 +81,9 @@ class _NoRecorder:
     def __init__(self, *_: object, **__: object) -> None:
         pass
 
+    def tell_marks(self, _: object) -> None:
+        pass
+
     def step(self) -> None:
         raise RunError("interrupted")
 
