@@ -201,24 +201,24 @@ def record(bag: Path, status: Path, wanted: Wanted, parent: int) -> None:
         RunError: the master does not answer.
         ValueError: a message that is not of the type of its topic.
     """
-    stop = stop_on_signals()
-    master = Master(os.environ["ROS_MASTER_URI"], NODE_NAME)
-    graph = GraphRecorder(master, os.environ.get("ROS_IP", "127.0.0.1"), wanted, bag)
-    told = 0.0
-    try:
-        while not stop.is_set() and os.getppid() == parent:
-            account = graph.step()
-            if time.monotonic() - told > STATUS_PERIOD_S:
-                told = time.monotonic()
-                # On a full disk the bag can still be closed.
-                with contextlib.suppress(OSError):
-                    save_status(account, status)
-    finally:
+    with stop_on_signals() as stop:
+        master = Master(os.environ["ROS_MASTER_URI"], NODE_NAME)
+        graph = GraphRecorder(master, os.environ.get("ROS_IP", "127.0.0.1"), wanted, bag)
+        told = 0.0
         try:
-            account = graph.finish()
+            while not stop.is_set() and os.getppid() == parent:
+                account = graph.step()
+                if time.monotonic() - told > STATUS_PERIOD_S:
+                    told = time.monotonic()
+                    # On a full disk the bag can still be closed.
+                    with contextlib.suppress(OSError):
+                        save_status(account, status)
         finally:
-            if os.getppid() != parent:
-                end_processes(os.environ[GRAPH_WORD])
+            try:
+                account = graph.finish()
+            finally:
+                if os.getppid() != parent:
+                    end_processes(os.environ[GRAPH_WORD])
     save_status(account, status)
 
 

@@ -158,34 +158,36 @@ def run(arguments: Sequence[str], say: Say) -> None:
         raise MissingToolError(
             "rospy is not installed; install it with: apt-get install python3-rospy"
         ) from error
-    stop = stop_on_signals()
-    uri = uri_of(os.environ)
-    name = _name(arguments)
-    # First, because rospy waits forever for a master.
-    subscriber = RawSubscriber(Master(uri, f"{name}_reader"), own_host(os.environ, uri), [ROSOUT])
-    try:
-        rospy.init_node(
-            name.strip("/"),
-            argv=[_NODE, *(word for word in arguments if ":=" in word)],
-            disable_signals=True,
-            disable_rosout=True,
+    with stop_on_signals() as stop:
+        uri = uri_of(os.environ)
+        name = _name(arguments)
+        # First, because rospy waits forever for a master.
+        subscriber = RawSubscriber(
+            Master(uri, f"{name}_reader"), own_host(os.environ, uri), [ROSOUT]
         )
-        publisher = rospy.Publisher(TOPIC, String, queue_size=_QUEUE)
-        relay = Relay(lambda line: publisher.publish(String(line)))
-        node = Master(uri, rospy.get_name())
-        watch = MasterWatch(
-            lambda: _knows(node), lambda: _register(subscriber, node, rospy.get_node_uri()), say
-        )
-        say(f"passing on reports from {ROSOUT} to {TOPIC}")
-        _serve(subscriber, relay, watch, lambda: stop.is_set() or rospy.is_shutdown())
-        broken = sum(subscriber.broken.values())
-        say(relay.account() + (f", {many(broken, 'message')} broken off" if broken else ""))
-    finally:
-        subscriber.close()
-        # It calls the master, without a limit in time.
-        leaving = threading.Thread(target=rospy.signal_shutdown, args=("it ends",), daemon=True)
-        leaving.start()
-        leaving.join(_LEAVE_S)
+        try:
+            rospy.init_node(
+                name.strip("/"),
+                argv=[_NODE, *(word for word in arguments if ":=" in word)],
+                disable_signals=True,
+                disable_rosout=True,
+            )
+            publisher = rospy.Publisher(TOPIC, String, queue_size=_QUEUE)
+            relay = Relay(lambda line: publisher.publish(String(line)))
+            node = Master(uri, rospy.get_name())
+            watch = MasterWatch(
+                lambda: _knows(node), lambda: _register(subscriber, node, rospy.get_node_uri()), say
+            )
+            say(f"passing on reports from {ROSOUT} to {TOPIC}")
+            _serve(subscriber, relay, watch, lambda: stop.is_set() or rospy.is_shutdown())
+            broken = sum(subscriber.broken.values())
+            say(relay.account() + (f", {many(broken, 'message')} broken off" if broken else ""))
+        finally:
+            subscriber.close()
+            # It calls the master, without a limit in time.
+            leaving = threading.Thread(target=rospy.signal_shutdown, args=("it ends",), daemon=True)
+            leaving.start()
+            leaving.join(_LEAVE_S)
 
 
 def _serve(
