@@ -23,8 +23,10 @@ from pytpc.lint.facts import (
     NodeRead,
     Renamed,
     Setting,
+    is_anything,
     last_part,
     own_part,
+    words_in,
 )
 from pytpc.lint.finding import Spot
 from pytpc.processes.binaries import Libraries, system_folders
@@ -163,7 +165,14 @@ class Robot:
         texts |= of_libraries(self._libraries, dict.fromkeys(files), self._ours, wanted)
         texts |= of_python_modules(_python_files(known), self.env, wanted)
         return Node(
-            node.name, program, tuple(dict.fromkeys(reads)), why, texts, self._renamed(known)
+            node.name,
+            program,
+            tuple(dict.fromkeys(reads)),
+            why,
+            texts,
+            self._renamed(known),
+            _pieces(known, reads),
+            frozenset(words_in(node.args)),
         )
 
     @cached_property
@@ -276,6 +285,14 @@ class Robot:
             for root, is_python in sorted(roots)
         )
         return frozenset[str]().union(*found)
+
+
+def _pieces(units: Iterable[LinkUnit], reads: Iterable[NodeRead]) -> frozenset[str]:
+    """The texts that names are put together of, in the files with reads of such names."""
+    files = {read.spot.path for read in reads if is_anything(read)}
+    roots = sorted({unit.source_root for unit in units}) if files else []
+    found = (source_texts(root).pieces.get(file, ()) for root in roots for file in sorted(files))
+    return frozenset[str]().union(*found)
 
 
 def _plugins_of(processes: Iterable[Process]) -> frozenset[str]:

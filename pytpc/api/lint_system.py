@@ -35,13 +35,15 @@ def of_libraries(
     Args:
         libraries: finds them.
         first: the files of a process: its program, and the libraries that it opens.
-        ours: files of the workspace, which are analysed.
+        ours: files of the workspace, which are analysed; a process has those of its install folder,
+            which have the same names.
         wanted: last parts of names.
     """
     found: set[str] = set()
+    names = {path.name for path in ours}
     for binary in libraries.all_of(first):
         path = binary.path
-        if path in ours or _ROS_ITSELF.match(path.name) or not _reads_parameters(path):
+        if path.name in names or _ROS_ITSELF.match(path.name) or not _reads_parameters(path):
             continue
         found |= literals(path).intersection(wanted)
         found |= {one for one in wanted if _may_be_in_code(one, path)}

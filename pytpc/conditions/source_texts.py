@@ -16,6 +16,14 @@ from pytpc.conditions.parameter_calls import without_comments
 _CPP = (".cpp", ".cc", ".cxx", ".c", ".h", ".hpp", ".hh", ".hxx", ".ipp", ".tpp")
 _TEXT = re.compile(r"\"((?:\\.|[^\"\\\n]){1,120})\"|'((?:\\.|[^'\\\n]){1,120})'")
 _NAME = re.compile(r"[~/]?[A-Za-z][\w./-]*")
+# What takes the place of another text in a text.
+_HOLE = re.compile(r"%(?:\(\w+\))?[-+ #0-9.]*[a-zA-Z]|\{[^{}]*\}|%\d+%")
+# A text beside which another one is added, in C++ and in Python.
+_ADDED = re.compile(
+    r"(?:\+|<<)\s*(?:std::string\s*\(\s*)?[\"']([\w~/.-]{2,120})[\"']"
+    r"|[\"']([\w~/.-]{2,120})[\"'](?:\s*\)|s)?\s*(?:\+|<<)"
+)
+_SHORTEST_PIECE = 2
 _SETS = re.compile(r"\b(?:setParam|set_param|param::set|set_parameters?)\s*\(\s*[\"']([\w~/.]+)")
 # Calls that read, or list, all parameters of a namespace.
 _READS_ALL = re.compile(
@@ -68,6 +76,7 @@ class SourceTexts:
     ``turned`` what is handed, as it is, to a function that takes one in radians.
     ``renamings`` are calls of functions that deal with old names, ``renamers`` the functions of
     this kind that are defined here: which of their texts, from 0, is the old name.
+    ``pieces`` are texts, by file, that others are added to, or that have places for others.
     """
 
     texts: dict[str, list[tuple[str, int]]]
@@ -77,6 +86,7 @@ class SourceTexts:
     turned: frozenset[str] = frozenset()
     renamings: tuple[Renaming, ...] = ()
     renamers: Mapping[str, tuple[int, str]] = field(default_factory=dict)
+    pieces: Mapping[str, frozenset[str]] = field(default_factory=dict)
 
     def unread(self, reads: Collection[tuple[str, int]], *, python: bool) -> frozenset[str]:
         """The texts in the files of a language at other places than beside one of these reads."""
@@ -110,8 +120,10 @@ def source_texts(package: str) -> SourceTexts:
     reads_all = False
     renamings: list[Renaming] = []
     renamers: dict[str, tuple[int, str]] = {}
+    pieces: dict[str, frozenset[str]] = {}
     for path in _sources(package):
         lines = _read(path)
+        pieces[str(path)] = frozenset(piece for line in lines for piece in _pieces(line))
         for lineno, line in enumerate(lines, start=1):
             for one, other in _TEXT.findall(line):
                 text = one or other
@@ -133,7 +145,22 @@ def source_texts(package: str) -> SourceTexts:
         frozenset(turned),
         tuple(renamings),
         renamers,
+        pieces,
     )
+
+
+def _pieces(line: str) -> Iterator[str]:
+    """The texts in a line that names may be put together of.
+
+    >>> sorted(_pieces('std::string("gain_") + axis; sprintf(a, "wheel%d_limit", n); f("rate");'))
+    ['_limit', 'gain_', 'wheel']
+    """
+    found = [_last(one or other) for one, other in _ADDED.findall(line)]
+    for one, other in _TEXT.findall(line):
+        parts = _HOLE.split(one or other)
+        if len(parts) > 1 and not any(character.isspace() for character in one or other):
+            found += [_last(parts[0]), *parts[1:]]
+    yield from (piece for piece in found if len(piece) >= _SHORTEST_PIECE)
 
 
 def _add_renamings(

@@ -20,6 +20,7 @@ Needed = Literal["", "fails", "reports"]
 _ANY_FOLDER, _ANY = "\0", "\1"
 _PATTERNS = {_ANY_FOLDER: "/(?:.*/)?", _ANY: ".*"}
 _PLACES = re.compile("([\0\1])")
+_WORD = re.compile(r"[A-Za-z][\w.-]*")
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,6 +105,7 @@ class Node:
 
     ``unjudged`` says why its reads are not all known; empty where they are. ``texts`` are texts in
     its sources and libraries that may be names of parameters, though no read of them is known.
+    ``pieces`` are texts with which its code puts names together, ``words`` those of its arguments.
     ``renamed`` has the last parts of names that its code calls old.
     """
 
@@ -113,6 +115,8 @@ class Node:
     unjudged: str = ""
     texts: frozenset[str] = frozenset()
     renamed: Mapping[str, Renamed] = field(default_factory=dict)
+    pieces: frozenset[str] = frozenset()
+    words: frozenset[str] = frozenset()
 
     @cached_property
     def _by_end(self) -> Mapping[str, list[tuple[re.Pattern[str], NodeRead]]]:
@@ -176,6 +180,20 @@ class Facts:
     @cached_property
     def _tables(self) -> frozenset[str]:
         return frozenset(one for name in self.by_name for one in above(name))
+
+    @cached_property
+    def words(self) -> frozenset[str]:
+        """The words of all values: one may be a list of the names of others."""
+        return frozenset(word for one in self.settings for word in words_in(one.value))
+
+    @cached_property
+    def read_one_by_one(self) -> frozenset[str]:
+        """The namespaces of values that a node reads by their own names."""
+        return frozenset(
+            namespace(one.name)
+            for one in self.settings
+            if any(not is_anything(read) for _, read in self.readers(one.name))
+        )
 
     @cached_property
     def declared_by_name(self) -> Mapping[str, Sequence[Declared]]:
@@ -245,6 +263,28 @@ def own_part(name: str) -> str:
     ('rate', 'max')
     """
     return last_part(name).rpartition(".")[2]
+
+
+def is_anything(read: NodeRead) -> bool:
+    """Whether the last part of its name is not known, so that it may be of any parameter."""
+    return DYNAMIC in last_part(read.name)
+
+
+def words_in(value: object) -> Iterator[str]:
+    """The words of a value, or of those in a list or map, that may be names of parameters.
+
+    >>> sorted(words_in(["front_laser back/laser, {a}", {"name": 5}]))
+    ['a', 'back', 'front_laser', 'laser', 'name']
+    """
+    if isinstance(value, str):
+        yield from _WORD.findall(value)
+    elif isinstance(value, Mapping):
+        for key, below in value.items():
+            yield from words_in(key)
+            yield from words_in(below)
+    elif isinstance(value, list | tuple):
+        for one in value:
+            yield from words_in(one)
 
 
 def above(name: str) -> Iterator[str]:

@@ -8,11 +8,23 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import NamedTuple
 
 from pytpc.base.closest import closest
 from pytpc.base.wording import listed, plain
-from pytpc.lint.facts import Facts, Node, NodeRead, Setting, Unjudged, above, last_part, own_part
+from pytpc.lint.facts import (
+    Facts,
+    Node,
+    NodeRead,
+    Setting,
+    Unjudged,
+    above,
+    is_anything,
+    last_part,
+    namespace,
+    own_part,
+)
 from pytpc.lint.finding import Evidence, Finding, Spot
 from pytpc.static.parameters import DYNAMIC
 
@@ -48,15 +60,15 @@ def unread(facts: Facts) -> Unread:
     reasons = defaultdict(set)
     used = set()
     for setting in facts.settings:
-        why = ""
-        reads = [read for _, read in facts.readers(setting.name)]
-        if reads and not _is_of_ros(setting.name) and all(_is_anything(read) for read in reads):
-            why = ANY
-        elif reads or _is_of_ros(setting.name):
+        reads = list(facts.readers(setting.name))
+        is_named = any(not is_anything(read) for _, read in reads)
+        if is_named or _is_of_ros(setting.name):
             used.add(setting.spot)
             continue
         concerned = _concerned(facts, setting)
-        why = why or _why_unjudged(facts, setting, concerned)
+        why = _why_unjudged(facts, setting, concerned)
+        if not why and any(_may_be(facts, setting, node, read) for node, read in reads):
+            why = ANY
         if why:
             reasons[why].add(setting.name)
             used.add(setting.spot)
@@ -67,9 +79,27 @@ def unread(facts: Facts) -> Unread:
     return Unread(findings, unjudged, frozenset(used))
 
 
-def _is_anything(read: NodeRead) -> bool:
-    """Whether the last part of its name is not known, so that it may be of any parameter."""
-    return DYNAMIC in last_part(read.name)
+def _may_be(facts: Facts, setting: Setting, node: Node, read: NodeRead) -> bool:
+    """Whether the name that a call puts together may be that of a setting.
+
+    Such a name is made of texts in the sources, of values that are set (a list of names), or of the
+    arguments of the node. One of which nothing is known may be made of these alone: otherwise, one
+    such call would hide all misspelt names.
+    """
+    end = last_part(read.name)
+    if end != DYNAMIC:
+        return True
+    words = facts.words | node.words
+    parts = {last_part(setting.name), own_part(setting.name)}
+    if not parts.isdisjoint(words | node.texts):
+        return True
+    own = own_part(setting.name)
+    if any(own.startswith(piece) or own.endswith(piece) for piece in node.pieces):
+        return True
+    # It may be the name of a table with the value in it; what is read one by one is none.
+    above_it = setting.name.split("/")[:-1]
+    is_in_table = read.is_table and not words.union(node.texts).isdisjoint(above_it)
+    return is_in_table and namespace(setting.name) not in facts.read_one_by_one
 
 
 def _is_of_ros(name: str) -> bool:
@@ -130,8 +160,21 @@ def _meant(facts: Facts, setting: Setting, concerned: list[Node]) -> list[NodeRe
     mine = [read for node in concerned for read in node.reads]
     if len(mine) > _MOST_READS:
         return []
-    unset = {read.name: read for read in mine if not facts.is_set(read.name) and not read.is_table}
+    unset: dict[str, NodeRead] = {}
+    for read in mine:
+        beside = _beside(setting, read, concerned)
+        if not read.is_table and not facts.is_set(beside):
+            unset.setdefault(beside, replace(read, name=beside))
     return [unset[name] for name in closest(setting.name, unset)]
+
+
+def _beside(setting: Setting, read: NodeRead, concerned: list[Node]) -> str:
+    """The name of a read: where a part of it is not known, that beside a setting, if it fits."""
+    if read.is_exact or is_anything(read):
+        return read.name
+    beside = f"{setting.name.rpartition('/')[0]}/{last_part(read.name)}"
+    fits = any(read in node.reads_of(beside) for node in concerned)
+    return beside if fits else read.name
 
 
 def _once(reads: Iterator[NodeRead]) -> list[NodeRead]:

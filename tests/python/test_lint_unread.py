@@ -22,6 +22,12 @@ def test_a_misspelt_name_has_the_one_that_was_meant():
     ]  # fmt: skip
 
 
+def test_the_right_name_where_only_the_running_node_knows_its_namespace():
+    guard = node(read("/robot/guard/<dynamic>/tolerance"), read("/robot/guard/fast/tolerance"))
+    [(_, text)] = said(unread(facts({"/robot/guard/slow/tolerence": 0.4}, guard)).findings)
+    assert text.partition("; ")[2].startswith("did you mean /robot/guard/slow/tolerance")
+
+
 # Who set both has the right one already.
 def test_a_name_that_is_set_was_not_meant():
     values = {"/robot/guard/min_distance": 0.4, "/robot/guard/min_distnace": 0.4}
@@ -87,11 +93,63 @@ def test_a_node_that_another_launch_file_starts():
     }
 
 
-def test_what_is_not_known():
-    anything = node(read("/robot/guard/<dynamic>"))
-    assert reasons(facts({"/robot/guard/x": 1}, anything)) == {
-        "a node puts the names of parameters together": {"/robot/guard/x"}
+ANY = "a node puts the names of parameters together"
+
+
+# A name of which nothing is known is made of texts of the code, or of values.
+@pytest.mark.parametrize(
+    ("values", "guard"),
+    [
+        # Only its first letters are known.
+        ({"/robot/guard/x_max": 1}, node(read("/robot/guard/x_<dynamic>"))),
+        ({"/robot/guard/x": 1}, node(read("/<dynamic>"), words=frozenset({"x"}))),
+        # As in `"joint_" + std::to_string(n)`.
+        ({"/robot/guard/joint_1": 1}, node(read("/<dynamic>"), pieces=frozenset({"joint_"}))),
+        ({"/robot/guard/left_max": 1}, node(read("/<dynamic>"), pieces=frozenset({"_max"}))),
+        # A table whose name is a value, or a text of the code.
+        ({"/robot/guard/left/y": 1, "/robot/guard/all": "left right"}, ...),
+        ({"/robot/guard/left/y": 1, "/robot/guard/all": [{"name": "left"}]}, ...),
+        ({"/robot/guard/left/y": 1}, node(
+            read("/robot/guard/<dynamic>", is_table=True), texts=frozenset({"left"}))),
+    ],
+)  # fmt: skip
+def test_what_may_have_a_name_that_is_put_together(values, guard):
+    if guard is ...:
+        guard = node(read("/robot/guard/<dynamic>", is_table=True), read("/robot/guard/all", ""))
+    found = facts(values, guard)
+    assert reasons(found) == {ANY: {next(iter(values))}}
+    assert unread(found).findings == []
+
+
+def test_another_node_with_the_text_of_a_name_may_read_it():
+    tool = node(read("/<dynamic>"), name="/tool", texts=frozenset({"x"}))
+    assert reasons(facts({"/robot/guard/x": 1, "/robot/guard/y": 1}, node(LIMIT), tool)) == {
+        ANY: {"/robot/guard/x"}
     }
+
+
+@pytest.mark.parametrize("is_table", [False, True])
+def test_one_name_that_is_put_together_does_not_hide_a_misspelt_one(is_table: bool):
+    anything = read("/<dynamic>", is_table=is_table)
+    guard = node(LIMIT, anything, texts=frozenset({"left"}), pieces=frozenset({"joint_"}))
+    values = {"/robot/guard/min_distnace": 0.4, "/robot/guard/mode": "left"}
+    [(line, text), *_] = said(unread(facts(values, guard)).findings)
+    assert (line, text.partition(";")[0]) == (
+        1, "/robot/guard does not read /robot/guard/min_distnace",
+    )  # fmt: skip
+
+
+# `layer` stands in the code, but what is below it is read by its own names.
+def test_a_misspelt_name_in_a_namespace_that_is_read_one_by_one():
+    guard = node(
+        read("/<dynamic>", is_table=True), read("/robot/guard/layer/height", 1.0),
+        texts=frozenset({"layer"}),
+    )  # fmt: skip
+    values = {"/robot/guard/layer/heigth": 2.0, "/robot/guard/layer/height": 1.0}
+    assert [line for line, _ in said(unread(facts(values, guard)).findings)] == [1]
+
+
+def test_what_is_not_known():
     other = node(LIMIT, unjudged="robot/guard was not analysed")
     assert reasons(facts({"/robot/guard/x": 1}, other)) == {
         "robot/guard was not analysed": {"/robot/guard/x"}
