@@ -6,6 +6,7 @@ import csv
 import json
 import math
 import re
+import shutil
 from collections import defaultdict
 from dataclasses import replace
 from pathlib import Path
@@ -27,6 +28,7 @@ from pytpc.diagnosis.results.exported import MissionExport
 from pytpc.present.viewers.flat_tables import TABLES, write_tables
 from pytpc.present.viewers.layouts import foxglove_layout, plotjuggler_layout
 from pytpc.present.viewers.mcap_export import write_mcap
+from pytpc.recording.marks import Mark, write_marks
 
 LIMIT = "/tpc/arm/guard/limit/node_cpp_10"
 NEAR = "/tpc/arm/guard/near/node_cpp_11"
@@ -302,3 +304,48 @@ def test_the_command_writes_several_at_once(tmp_path: Path) -> None:
     assert document["marks"] == 5
     assert document["outputs"] == {name.lstrip("-"): str(path) for name, path in outputs.items()}
     assert all(path.exists() for path in outputs.values())
+
+
+# The mission's own folder, its marks, and the marks of another mission stay as they are.
+@pytest.mark.parametrize(
+    ("words", "status", "said"),
+    [
+        (["--mcap", "."], 1, ".: it is a folder; give --mcap the path of a file"),
+        (["--mcap", "day/m.mcap"], 1, "day/m.mcap: --mcap would write into the recording"),
+        (["--csv", "day"], 1, "day/evaluations.csv: --csv would write into the recording"),
+        (["--csv", "link"], 1, "link/evaluations.csv: --csv would write into the recording"),
+        (["--csv", "other"], 1, "other/marks.csv: --csv would write into the recording"),
+        (["--marks", "more.csv", "--rerun", "more.csv"], 1, "more.csv: --rerun would write into"),
+        (["--mcap", "x", "--foxglove", "./x"], 2, "--mcap and --foxglove name the same file: x"),
+    ],
+)
+def test_what_is_read_and_marks_are_not_replaced(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: list[str], status: int, said: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    shutil.copytree(EXAMPLE, "day")
+    Path("link").symlink_to("day")
+    Path("other").mkdir()
+    for path in (Path("other/marks.csv"), Path("more.csv")):
+        write_marks([Mark(ns(1.0), "I")], path)
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+    ran = asked("export", "day", *words)
+    assert ran.exit_code == status, ran.output
+    assert said in " ".join(ran.stderr.split())
+    assert before == {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+
+
+def test_a_recording_that_is_a_file_is_not_replaced(tmp_path: Path) -> None:
+    source = tmp_path / "mission.mcap"
+    write_mcap(exported(), source)
+    before = source.read_bytes()
+    ran = asked("export", str(source), "--mcap", str(source), "--static", str(EXAMPLE))
+    assert ran.exit_code == 1
+    assert "--mcap would write into the recording" in ran.stderr
+    assert source.read_bytes() == before
+
+
+def test_both_kinds_of_tables_may_share_a_folder(tmp_path: Path) -> None:
+    ran = asked("export", str(EXAMPLE), "--csv", str(tmp_path), "--parquet", str(tmp_path))
+    assert ran.exit_code == 0, ran.stderr
+    assert len(list(tmp_path.iterdir())) == 2 * len(TABLES)
