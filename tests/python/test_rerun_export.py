@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -99,7 +100,10 @@ def test_a_recording_is_streamed_to_a_viewer(tmp_path: Path) -> None:
     words = ["--save", str(kept), "--port", str(port), "--bind", "127.0.0.1"]
     log = tmp_path / "viewer.txt"
     with log.open("w") as output:
-        viewer = subprocess.Popen([RERUN, *words], env=env, stdout=output, stderr=output)
+        # The command starts the viewer itself as a process of its own.
+        viewer = subprocess.Popen(
+            [RERUN, *words], env=env, stdout=output, stderr=output, start_new_session=True
+        )
     try:
         wait_for(lambda: is_open(port))
         address = f"127.0.0.1:{port}"
@@ -113,8 +117,9 @@ def test_a_recording_is_streamed_to_a_viewer(tmp_path: Path) -> None:
         )
         assert "passed on 12,797 evaluations" in said.stderr
     finally:
-        viewer.terminate()
+        os.killpg(viewer.pid, signal.SIGTERM)
         viewer.wait(PATIENCE_S)
+        wait_for(lambda: not is_open(port))
     # So fast, most evaluations are left out.
     values = columns_of(kept, "Scalars:scalars")
     times = [time for time, _ in values["/mission/mission_timeout/mission_states_cpp_40/value"]]
