@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+import numpy as np
 import pyarrow.parquet as pq
 import pytest
 from click.testing import CliRunner, Result
@@ -34,10 +35,11 @@ LIMIT = "/tpc/arm/guard/limit/node_cpp_10"
 NEAR = "/tpc/arm/guard/near/node_cpp_11"
 USED = "/tpc/arm/guard/used/node_cpp_12"
 # time, topic, value, threshold, margin, result, flop, evaluations; worked out in export_samples.
+# The summary at 3.5 s has the first evaluation of ~near, too.
 EVALUATIONS = [
     (1.0, LIMIT, 4.0, 3.0, 1.0, True, False, 1),
     (2.0, LIMIT, 2.0, 3.0, -1.0, False, True, 1),
-    (2.5, NEAR, 5.0, 8.0, 1.5, True, False, 1),
+    (2.5, NEAR, 5.0, 8.0, 1.5, True, False, 0),
     (3.0, USED, 1.0, 1.0, None, True, False, 1),
     (3.5, NEAR, 9.0, 8.0, -0.5, False, True, 7),
     (4.0, LIMIT, 4.0, 3.5, 0.5, True, True, 1),
@@ -81,6 +83,22 @@ def test_the_values_of_a_node_with_summaries_alone_are_its_own() -> None:
     both = replace(recording, events=replace(events, nodes=("/other",), node=events.node * 0))
     values = [(one.node, one.time_ns, one.number) for one in exported(both).values]
     assert sorted(values) == [(NODE, ns(3.5), 4.0), ("/other", ns(1.5), 3.0)]
+
+
+# Under `light`, ~near turns at 2.9 s and 3.1 s: two reports of their own, which its summary of 7
+# evaluations has among its flops; then two reports and 5 others are 7. With 3 flops, one is untold.
+@pytest.mark.parametrize(("flops", "is_untold"), [(2, False), (3, True)])
+def test_what_a_summary_has_counts_once(flops: int, is_untold: bool) -> None:
+    recording = mission((2.9, 1, False, 9.0, 8.0, NODE), (3.1, 1, True, 5.0, 8.0, NODE))
+    many = replace(recording.summaries, flops=np.array([flops]))
+    found = exported(replace(recording, summaries=many))
+    near = [one.topic for one in found.series].index(NEAR)
+    (rows,) = found.rows(100)
+    own = rows.series == near
+    # The first one, at 2.5 s, was 0.1 s before the summary began, so that it may be in it.
+    assert rows.time_ns[own].tolist() == [ns(2.5), ns(2.9), ns(3.1), ns(3.5)]
+    assert rows.evaluations[own].tolist() == [0, 0, 0, 7]
+    assert rows.flop[own].tolist() == [False, True, True, is_untold]
 
 
 def test_each_mark_is_judged_by_those_up_to_it() -> None:

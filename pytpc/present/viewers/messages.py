@@ -31,10 +31,10 @@ _FIELDS = {
 float64 value          # what was compared
 float64 threshold      # what it was compared with
 float64 margin         # above 0: the comparison holds; in the unit that the metadata says
-uint32 evaluations     # 1, or how many the summary has
+uint32 evaluations     # 1; 0 if a summary counts it; or how many the summary has
 bool result            # the result of the whole condition
 bool holds             # the result of this comparison
-bool flop              # the result changed
+bool flop              # the result changed; of a summary: changes that no other message tells
 """,
     PARAMETER: """\
 # From now on the parameter has this value.
