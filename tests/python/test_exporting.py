@@ -167,6 +167,22 @@ def test_the_ranks_are_those_of_each_period(mcap: Path) -> None:
     assert times == [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
 
 
+# Both are written by a part of their own; the file's reader and the table must agree on each.
+def test_ranks_in_the_file_are_those_of_the_table(mcap: Path, tmp_path: Path) -> None:
+    write_tables(exported(), tmp_path, "parquet")
+    rows = pq.read_table(tmp_path / "ranks.parquet").to_pylist()
+    table = {(r["time_ns"] / 1e9, r["parameter"]): [r["rank1"], r["rank2"]] for r in rows}
+    ranks = exported().ranks
+    assert len(rows) == ranks.combined.size > 0
+    for time, message in messages_of(mcap)["/tpc/ranks/limit"]:
+        assert [message.type1, message.type2] == table[time, "~limit"]
+    column = ranks.parameters.index("~limit")
+    assert [table[t / 1e9, "~limit"] for t in ranks.times_ns.tolist()] == [
+        [float(one[row, column]) for one in (ranks.rank1, ranks.rank2)]
+        for row in range(ranks.times_ns.size)
+    ]
+
+
 def test_rosbags_reads_it_by_the_definitions_in_it(mcap: Path) -> None:
     with AnyReader([mcap], default_typestore=get_typestore(Stores.EMPTY)) as reader:
         connections = [one for one in reader.connections if one.topic == LIMIT]
