@@ -12,6 +12,7 @@ from pytpc.api.comparing import RecordedRun
 from pytpc.api.exporting import export_of
 from pytpc.base.errors import InputError
 from pytpc.base.paths import MERGED_FILE, OWN_FOLDER
+from pytpc.base.signals import signals_end
 from pytpc.base.wording import many, plain
 from pytpc.cli.console import print_json, progress, warn
 from pytpc.cli.options import asked_mission, good_runs, recording_of
@@ -75,7 +76,9 @@ def export_mission(sources: Sequence[Path], viewers: Viewers) -> None:
             f"{many(found.unknown, 'report')} left out: the static information does not have their"
             " comparisons"
         )
-    _write(found, viewers)
+    # A signal leaves no part of a file.
+    with signals_end():
+        _write(found, viewers)
     if viewers.as_json:
         print_json(
             {

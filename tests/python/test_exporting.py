@@ -116,7 +116,9 @@ def test_each_mark_is_judged_by_those_up_to_it() -> None:
 # Both nodes run the same program; only the guard's ~limit turned.
 @pytest.mark.parametrize("is_marked", [True, False])
 def test_layouts_show_the_node_that_turned(is_marked: bool) -> None:
-    recording = mission((1.5, 0, True, 4.0, 3.0, "/arm/afar"), (4.1, 0, True, 4.0, 3.0, "/arm/afar"))
+    recording = mission(
+        (1.5, 0, True, 4.0, 3.0, "/arm/afar"), (4.1, 0, True, 4.0, 3.0, "/arm/afar")
+    )
     found = exported(recording if is_marked else replace(recording, marks=()))
     shown = [found.series[number] for number in found.first]
     assert [one.node for one in shown if one.parameter == "~limit"] == [NODE]
