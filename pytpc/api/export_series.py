@@ -8,9 +8,10 @@ from pathlib import PurePosixPath
 
 import numpy as np
 
-from pytpc.base.columns import Floats, Int32s, Int64s
+from pytpc.base.columns import Bools, Floats, Int32s, Int64s
 from pytpc.base.legal_names import LegalNames, legal_part
 from pytpc.diagnosis.results.exported import ComparisonSeries, ExportedRows
+from pytpc.diagnosis.scores.summary_scores import FLOP_SLACK_NS, covered
 from pytpc.diagnosis.thresholds.margins import MarginRules
 from pytpc.recording.events import Events
 from pytpc.recording.mission import Recording
@@ -31,6 +32,8 @@ class ExportSeries:
 
     ``numbers`` are their numbers. ``of_events`` and ``of_summaries`` int32[keys, nodes] say which
     one each pair of codes of the tables is, -1 for none. ``count`` rows of both tables have one.
+    ``in_summary`` bool[events] are those that a summary has, too; ``has_untold`` bool[summaries]
+    are those with flops that are no events.
     """
 
     series: tuple[ComparisonSeries, ...]
@@ -39,6 +42,8 @@ class ExportSeries:
     of_events: Int32s
     of_summaries: Int32s
     count: int
+    in_summary: Bools
+    has_untold: Bools
 
     @classmethod
     def of(cls, recording: Recording, static_info: StaticInfo, names: LegalNames) -> ExportSeries:
@@ -73,7 +78,16 @@ class ExportSeries:
         of_events, of_summaries = _numbers_of(events, numbers), _numbers_of(summaries, numbers)
         count = np.count_nonzero(of_events[events.key, events.node] >= 0)
         count += np.count_nonzero(of_summaries[summaries.key, summaries.node] >= 0)
-        return cls(tuple(series), numbers, rules, of_events, of_summaries, int(count))
+        return cls(
+            tuple(series),
+            numbers,
+            rules,
+            of_events,
+            of_summaries,
+            int(count),
+            _in_summary(recording),
+            _has_untold(recording),
+        )
 
     def of_key(self, key: str | None) -> tuple[int, ...]:
         """The series of a comparison, in all nodes."""
@@ -103,6 +117,36 @@ def _numbers_of(table: Events | Summaries, numbers: dict[SeriesKey, int]) -> Int
     for row, key in enumerate(table.keys):
         for column, node in enumerate(table.nodes):
             found[row, column] = numbers.get((key, node), -1)
+    return found
+
+
+def _in_summary(recording: Recording) -> Bools:
+    """bool[events]: under ``edges`` and ``light``, an event is an evaluation of a summary, too."""
+    events, summaries = recording.events, recording.summaries
+    found = np.zeros(len(events), np.bool_)
+    for key in summaries.keys:
+        rows, own = events.rows_of(key), summaries.rows_of(key)
+        if rows.size and own.size:
+            found[rows] = covered(events, rows, summaries, own)
+    return found
+
+
+def _has_untold(recording: Recording) -> Bools:
+    """bool[summaries]: more flops than there are events of flops in its time."""
+    events, summaries = recording.events, recording.summaries
+    found = summaries.flops > 0
+    for key in summaries.keys:
+        for node in summaries.nodes:
+            own = summaries.rows_in(key, node)
+            own = own[summaries.flops[own] > 0]
+            if not own.size:
+                continue
+            rows = events.rows_in(key, node)
+            times = events.time_ns[rows[events.flop[rows]]]
+            begin, end = summaries.begin_ns[own] - FLOP_SLACK_NS, summaries.end_ns[own]
+            last = np.searchsorted(times, end + FLOP_SLACK_NS, side="right")
+            told = last - np.searchsorted(times, begin)
+            found[own] = summaries.flops[own] > told
     return found
 
 
@@ -150,7 +194,7 @@ def _joined(events: Events, rows: slice, found: ExportSeries) -> ExportedRows:
         events.result[rows],
         events.res[rows],
         events.flop[rows],
-        np.ones(series.size, np.int64),
+        np.where(found.in_summary[rows], 0, 1),
     )
 
 
@@ -165,7 +209,7 @@ def _summarised(table: Summaries, rows: Int64s, found: ExportSeries) -> Exported
         _margins(found, series, cmp, thresh),
         table.result[rows],
         table.res[rows],
-        table.flops[rows] > 0,
+        found.has_untold[rows],
         table.count[rows],
     )
 

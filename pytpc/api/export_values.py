@@ -44,8 +44,20 @@ def values_over_time(
             )
         )
         for time_ns, value in history:
-            numeric = float(value) if isinstance(value, bool | int | float) else math.nan
-            yield ExportedValue(time_ns, topic, node, parameter, numeric, shown_value(value))
+            text = shown_value(value)
+            yield ExportedValue(time_ns, topic, node, parameter, _number(value), text)
+
+
+def _number(value: object) -> float:
+    """A value as a float; NaN if it is no number, or a whole number that no float holds.
+
+    >>> _number(True), _number("3"), _number(10**400)
+    (1.0, nan, nan)
+    """
+    try:
+        return float(value) if isinstance(value, bool | int | float) else math.nan
+    except OverflowError:
+        return math.nan
 
 
 def _from_thresholds(

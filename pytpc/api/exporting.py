@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
@@ -11,6 +12,7 @@ import numpy as np
 from pytpc.api.diagnosing import AskedMission
 from pytpc.api.export_series import ExportSeries, rows_of
 from pytpc.api.export_values import values_over_time
+from pytpc.base.columns import Int64s
 from pytpc.base.legal_names import LegalNames
 from pytpc.base.wording import show
 from pytpc.diagnosis.results.advice import RankCurves
@@ -61,7 +63,7 @@ def export_of(
     found = ExportSeries.of(recording, static_info, names)
     ranks = _ranked(rank_curves(recording, static_info, asked.question, step_s=period_s))
     suspects = tuple(_judged(asked, found, on_progress))
-    first = _first_series(found, suspects, ranks)
+    first = _first_series(recording, found, suspects, ranks)
     log = sorted(
         [
             *map(mark_line, recording.marks),
@@ -164,17 +166,40 @@ def suspects_at(
 
 
 def _first_series(
-    found: ExportSeries, suspects: Sequence[ExportedSuspects], ranks: RankCurves
+    recording: Recording,
+    found: ExportSeries,
+    suspects: Sequence[ExportedSuspects],
+    ranks: RankCurves,
 ) -> tuple[int, ...]:
-    """The series of the first suspects; without marks, of those that rank highest at the end."""
+    """The series of the first suspects; without marks, of those that rank highest at the end.
+
+    Of several series of one suspect, such as those of two nodes, the one that turned most often.
+    """
     if suspects:
-        chosen = [number for one in suspects[-1].suspects for number in one.series[:1]]
+        several: list[Sequence[int]] = [one.series for one in suspects[-1].suspects]
     else:
         last = ranks.combined[-1] if ranks.times_ns.size else np.zeros(len(ranks.parameters))
-        names = [ranks.parameters[number] for number in np.argsort(-last, kind="stable")]
-        by_name = {one.parameter: number for number, one in enumerate(found.series)}
-        chosen = [by_name[name] for name in names if name in by_name]
+        by_name: defaultdict[str, list[int]] = defaultdict(list)
+        for number, one in enumerate(found.series):
+            by_name[one.parameter].append(number)
+        order = np.argsort(-last, kind="stable")
+        several = [by_name.get(ranks.parameters[number], ()) for number in order]
+    turns = _turns_of(recording, found)
+    chosen = [max(numbers, key=lambda one: turns[one]) for numbers in several if numbers]
     return tuple(dict.fromkeys(chosen))[:_FIRST]
+
+
+def _turns_of(recording: Recording, found: ExportSeries) -> Int64s:
+    """int64[series]: how often each one turned."""
+    turns = np.zeros(len(found.series), np.int64)
+    events, summaries = recording.events, recording.summaries
+    series = found.of_events[events.key, events.node]
+    own = (series >= 0) & events.flop
+    np.add.at(turns, series[own], 1)
+    series = found.of_summaries[summaries.key, summaries.node]
+    own = (series >= 0) & found.has_untold
+    np.add.at(turns, series[own], summaries.flops[own])
+    return turns
 
 
 def _range_of(recording: Recording, key: str) -> tuple[float, float]:

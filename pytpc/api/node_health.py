@@ -29,8 +29,14 @@ class _Node:
     first_s: float
     last_s: float
     rates: deque[tuple[float, int, int]] = field(default_factory=deque)
-    dropped: int = 0
+    said: int | None = None
+    heard: int = 0
     dropped_s: float | None = None
+
+    @property
+    def dropped(self) -> int:
+        """As its process has said, since its start; or more, as its reports said meanwhile."""
+        return max(self.said or 0, self.heard)
 
 
 class NodeHealth:
@@ -65,19 +71,23 @@ class NodeHealth:
         """What the nodes say of their settings."""
         self._settings = found
         for node, status in found.items():
-            self._note_dropped(node, _whole(status.values.get("dropped")), now_s)
+            known, text = self._nodes.get(node), status.values.get("dropped")
+            if known is None or text is None:
+                continue
+            count = _whole(text)
+            # What was dropped before we asked for the first time was not dropped just now.
+            if known.said is not None and count > known.said:
+                known.dropped_s = now_s
+            known.said = count
 
     def tell_dropped(self, dropped: Mapping[tuple[str, str], int], now_s: float) -> None:
         """How many reports each node has dropped since we listen, by node and reason."""
         for (node, why), count in dropped.items():
             self._whys[node][why] = count
         for node, whys in self._whys.items():
-            self._note_dropped(node, sum(whys.values()), now_s)
-
-    def _note_dropped(self, node: str, count: int, now_s: float) -> None:
-        known = self._nodes.get(node)
-        if known is not None and count > known.dropped:
-            known.dropped, known.dropped_s = count, now_s
+            known, count = self._nodes.get(node), sum(whys.values())
+            if known is not None and count > known.heard:
+                known.heard, known.dropped_s = count, now_s
 
     def statuses(self, now_s: float) -> list[DiagnosticStatus]:
         """The state of each node, by name."""

@@ -31,6 +31,9 @@ from pytpc.ros.graphs import nodes_at
 from pytpc.ros.node_status import NodeStatus
 
 _RANK_S = 1.0
+_REACH_S = 1.0
+_REACH_PATIENCE_S = 0.2
+_CLOSE_S = 5.0
 _LAYOUT_S = 10.0
 _SETTINGS_S = 15.0
 _SHOWN = 3
@@ -98,6 +101,19 @@ class Stream:
         """How many came, also in summaries."""
         return self._watching.evaluations
 
+    @property
+    def why_gone(self) -> str:
+        """Why the graph did not answer the last time that it was asked; empty if it did."""
+        return self._feed.fault() if self._feed.is_gone else ""
+
+    @property
+    def is_judged(self) -> bool:
+        """Whether the verdict by all marks so far is there."""
+        asked = self._judged.found
+        return not self._known or (
+            asked is not None and len(asked.run.recording.marks) == len(self._known)
+        )
+
     def tick(self) -> None:
         """Take in what has come, and pass it on."""
         now_ns = self._clock()
@@ -144,6 +160,9 @@ class RerunOutlet:
     Args:
         viewer: is connected already.
         rr: Rerun's module.
+
+    Attributes:
+        is_gone: the viewer ended, and gets nothing any more.
     """
 
     def __init__(self, viewer: RerunViewer, rr: object) -> None:
@@ -157,6 +176,8 @@ class RerunOutlet:
         self._verdict: object = None
         self._shown: tuple[ComparisonSeries, ...] | None = None
         self._layout_s = 0.0
+        self._reached_s = time.monotonic()
+        self.is_gone = False
 
     @property
     def left_out(self) -> int:
@@ -165,6 +186,8 @@ class RerunOutlet:
 
     def take(self, now: Moment) -> None:
         """Send the evaluations; once a second the ranks, and what is new of the rest."""
+        if self.is_gone or not self._reaches():
+            return
         viewer = self._viewer
         rows, new = self._live.rows(now.items, now.watching.static_info.comparisons)
         if new:
@@ -175,14 +198,27 @@ class RerunOutlet:
         if now.ranking is not self._ranked and now.now_ns is not None:
             self._ranked = now.ranking
             self._add_ranks(now.ranking, now.now_ns)
-        viewer.add_lines([mark_line(mark) for mark in now.marks if mark not in self._marks])
-        self._marks = now.marks
+        if now.marks != self._marks:
+            known = set(self._marks)
+            viewer.add_lines([mark_line(mark) for mark in now.marks if mark not in known])
+            self._marks = now.marks
         self._add_verdict(now)
         self._arrange(now)
 
     def close(self) -> None:
-        """Send what waits."""
-        self._viewer.close()
+        """Send what waits, if the viewer is there and takes it."""
+        try:
+            self._viewer.close(0.0 if self.is_gone else _CLOSE_S)
+        except RuntimeError:
+            self.is_gone = True
+
+    def _reaches(self) -> bool:
+        """Look once a second whether the viewer is there."""
+        steady_s = time.monotonic()
+        if steady_s >= self._reached_s + _REACH_S:
+            self.is_gone = not self._viewer.reaches(_REACH_PATIENCE_S)
+            self._reached_s = time.monotonic()
+        return not self.is_gone
 
     def _add_ranks(self, ranking: MarkRanking | None, now_ns: int) -> None:
         times = np.array([now_ns], np.int64)

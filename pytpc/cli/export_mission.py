@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -9,7 +10,9 @@ import click
 
 from pytpc.api.comparing import RecordedRun
 from pytpc.api.exporting import export_of
+from pytpc.base.errors import InputError
 from pytpc.base.paths import MERGED_FILE, OWN_FOLDER
+from pytpc.base.signals import signals_end
 from pytpc.base.wording import many, plain
 from pytpc.cli.console import print_json, progress, warn
 from pytpc.cli.options import asked_mission, good_runs, recording_of
@@ -17,10 +20,12 @@ from pytpc.cli.sources import static_for
 from pytpc.cli.viewer_options import Viewers
 from pytpc.diagnosis.question import PLAIN
 from pytpc.diagnosis.results.exported import MissionExport
-from pytpc.present.viewers.flat_tables import write_tables
+from pytpc.present.viewers.flat_tables import TABLES, write_tables
 from pytpc.present.viewers.layouts import write_foxglove, write_plotjuggler
 from pytpc.present.viewers.mcap_export import write_mcap
 from pytpc.present.viewers.rerun_export import rerun_sdk, write_rerun
+from pytpc.recording.marks import is_marks_file
+from pytpc.recording.marks_home import marks_home
 from pytpc.recording.mission import RUN_FILE, is_converted, is_ros2_folder
 
 _OF_RECORDINGS = (".bag", ".mcap", ".db3", ".tpc", ".log", ".txt")
@@ -56,6 +61,7 @@ def export_mission(sources: Sequence[Path], viewers: Viewers) -> None:
         raise click.UsageError(
             f"{source} is static information, for --sarif and --html; give a recording for {first}"
         )
+    _refuse_outputs(source, viewers)
     if viewers.rerun_file is not None:
         # Before anything is read or written, if it is missing.
         rerun_sdk()
@@ -70,7 +76,9 @@ def export_mission(sources: Sequence[Path], viewers: Viewers) -> None:
             f"{many(found.unknown, 'report')} left out: the static information does not have their"
             " comparisons"
         )
-    _write(found, viewers)
+    # A signal leaves no part of a file.
+    with signals_end():
+        _write(found, viewers)
     if viewers.as_json:
         print_json(
             {
@@ -93,6 +101,42 @@ def export_mission(sources: Sequence[Path], viewers: Viewers) -> None:
     )
     for path in viewers.outputs.values():
         click.echo(f"{what}: {plain(str(path))}")
+
+
+def _refuse_outputs(source: Path, viewers: Viewers) -> None:
+    """Refuse outputs that would replace what is read, a file of marks, or each other.
+
+    Raises:
+        UsageError: two options name the same file.
+        InputError: an output lies where nothing may be replaced.
+    """
+    kept = {_real(path) for path in (source, *viewers.marks_files, *viewers.references)}
+    if viewers.static_source is not None:
+        kept.add(_real(viewers.static_source))
+    home = marks_home(source)
+    kept |= {_real(path) for path in (home.file, *home.files(), *home.files_nearby())}
+    folder = _real(source)
+    written: dict[Path, str] = {}
+    for option, path in viewers.outputs.items():
+        is_folder = path in (viewers.csv_folder, viewers.parquet_folder)
+        if not is_folder and path.is_dir():
+            raise InputError(f"it is a folder; give {option} the path of a file", path)
+        kind = option.lstrip("-")
+        files = [path / f"{name}.{kind}" for name in TABLES] if is_folder else [path]
+        for file in files:
+            real = _real(file)
+            if real in kept or folder in real.parents or is_marks_file(file):
+                raise InputError(
+                    f"{option} would write into the recording, or over marks or another file that"
+                    " is read; give another path",
+                    file,
+                )
+            if (other := written.setdefault(real, option)) != option:
+                raise click.UsageError(f"{other} and {option} name the same file: {file}")
+
+
+def _real(path: Path) -> Path:
+    return Path(os.path.realpath(path))
 
 
 def _write(found: MissionExport, viewers: Viewers) -> None:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import socket
 import time
 from collections.abc import Callable, Sequence
-from contextlib import ExitStack
-from dataclasses import dataclass
+from contextlib import ExitStack, nullcontext, suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
 from urllib.parse import urlsplit
 
@@ -22,6 +23,7 @@ from pytpc.base.errors import InputError, RunError
 from pytpc.base.signals import signals_end
 from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import PATH, REFERENCE, as_object
+from pytpc.cli.console import warn
 from pytpc.cli.lines import say
 from pytpc.cli.options import (
     STATIC,
@@ -45,6 +47,7 @@ from pytpc.static.static_info import StaticInfo
 _VIEWER = "127.0.0.1:9876"
 _TURN_S = 0.1
 _CONNECT_S = 3.0
+_VERDICT_S = 30.0
 
 
 @dataclass(frozen=True)
@@ -102,7 +105,7 @@ def stream_command(given: _StreamArguments) -> None:
     RECORDING, a clock runs through the recording instead; then only --rerun is possible. Put
     RECORDING before --rerun, or the address behind it. Marks of all observers are heard, and the
     suspects are judged by them. At most 50 evaluations of a comparison are passed on every tenth
-    of a second. It ends with Ctrl-C.
+    of a second. Ctrl-C ends it.
     """
     if given.viewer is None and not given.diagnostics:
         raise click.UsageError("give --rerun [HOST:PORT], --diagnostics or both")
@@ -111,22 +114,69 @@ def stream_command(given: _StreamArguments) -> None:
             "--diagnostics needs a running robot; play a bag with `rosbag play` or `ros2 bag play`"
             " and leave RECORDING out, or give --rerun"
         )
+    is_endless = given.recording is None and given.seconds is None
     with ExitStack() as stack, signals_end():
         stream = _opened(given, stack)
-        until_s = None if given.seconds is None else time.monotonic() + given.seconds
-        while not stream.is_over() and (until_s is None or time.monotonic() < until_s):
-            time.sleep(_TURN_S)
-            stream.tick()
-        # What came in the last moment of a recording.
-        stream.tick()
+        # Where nothing else ends it, Ctrl-C is how it is ended.
+        with suppress(KeyboardInterrupt) if is_endless else nullcontext():
+            stream.run(given.seconds)
 
 
 class _Opened:
-    """A stream, and when it ends by itself."""
+    """A stream, and when it ends by itself.
 
-    def __init__(self, stream: Stream, is_over: Callable[[], bool]) -> None:
-        self.tick = stream.tick
-        self.is_over = is_over
+    Args:
+        stream: it.
+        viewer: where it is shown, if it is.
+        is_over: whether its recording has ended.
+        is_alone: whether nothing is left to do without the viewer.
+    """
+
+    def __init__(
+        self,
+        stream: Stream,
+        viewer: RerunOutlet | None,
+        is_over: Callable[[], bool],
+        *,
+        is_alone: bool,
+    ) -> None:
+        self._stream = stream
+        self._viewer = viewer
+        self._is_over = is_over
+        self._is_alone = is_alone
+        self._is_graph_gone = False
+        self._is_told_of_viewer = False
+
+    def run(self, seconds: float | None) -> None:
+        """Pass on what comes, until it is over.
+
+        Raises:
+            RunError: the viewer is gone, and nobody else gets the stream.
+        """
+        until_s = math.inf if seconds is None else time.monotonic() + seconds
+        while not self._is_over() and time.monotonic() < until_s:
+            time.sleep(_TURN_S)
+            self._tick()
+        # What came in the last moment of a recording, and the verdict by its last mark.
+        self._tick()
+        until_s = min(until_s, time.monotonic() + _VERDICT_S)
+        while not self._stream.is_judged and time.monotonic() < until_s:
+            time.sleep(_TURN_S)
+            self._tick()
+
+    def _tick(self) -> None:
+        self._stream.tick()
+        why = self._stream.why_gone
+        if bool(why) != self._is_graph_gone:
+            self._is_graph_gone = bool(why)
+            warn(f"{why}; waiting for it" if why else "the robot answers again")
+        if self._viewer is None or not self._viewer.is_gone or self._is_told_of_viewer:
+            return
+        what = "the viewer of Rerun's is gone"
+        if self._is_alone:
+            raise RunError(f"{what}; start one with `rerun`, and this command again")
+        self._is_told_of_viewer = True
+        warn(f"{what}; /diagnostics goes on")
 
 
 def _opened(given: _StreamArguments, stack: ExitStack) -> _Opened:
@@ -145,12 +195,12 @@ def _opened(given: _StreamArguments, stack: ExitStack) -> _Opened:
     outlets: list[Outlet] = []
     if given.diagnostics:
         outlets.append(DiagnosticsOutlet(side, feed, graph.master))
-    viewer = _viewer(shown, time.time_ns(), outlets)
+    viewer = _viewer(shown, None, outlets)
     judged = LiveDiagnosis(asked_of_graph(graph.master, static, file, question, good))
     stream = Stream(feed, side.now_ns, side.marks, judged, outlets)
     stack.callback(_close, stream, viewer)
     _tell(given, graph)
-    return _Opened(stream, lambda: False)
+    return _Opened(stream, viewer, lambda: False, is_alone=not given.diagnostics)
 
 
 def _recorded(given: _StreamArguments, question: Question, stack: ExitStack) -> _Opened:
@@ -169,11 +219,12 @@ def _recorded(given: _StreamArguments, question: Question, stack: ExitStack) -> 
     outlets: list[Outlet] = []
     viewer = _viewer(shown, recording.end_ns, outlets)
     played = _Played(recording, given.speed)
-    judged = LiveDiagnosis(ask, recording)
+    # The marks come as their times do.
+    judged = LiveDiagnosis(ask, replace(recording, marks=()))
     feed = RecordedFeed(recording, fresh)
     stream = Stream(feed, played.now_ns, played.marks, judged, outlets)
     stack.callback(_close, stream, viewer)
-    return _Opened(stream, played.is_over)
+    return _Opened(stream, viewer, played.is_over, is_alone=True)
 
 
 class _Played:
@@ -232,7 +283,7 @@ def _connected(address: str | None) -> tuple[str, int] | None:
 
 
 def _viewer(
-    shown: tuple[str, int] | None, end_ns: int, outlets: list[Outlet]
+    shown: tuple[str, int] | None, end_ns: int | None, outlets: list[Outlet]
 ) -> RerunOutlet | None:
     if shown is None:
         return None

@@ -6,12 +6,14 @@ import csv
 import json
 import math
 import re
+import shutil
 from collections import defaultdict
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+import numpy as np
 import pyarrow.parquet as pq
 import pytest
 from click.testing import CliRunner, Result
@@ -27,15 +29,17 @@ from pytpc.diagnosis.results.exported import MissionExport
 from pytpc.present.viewers.flat_tables import TABLES, write_tables
 from pytpc.present.viewers.layouts import foxglove_layout, plotjuggler_layout
 from pytpc.present.viewers.mcap_export import write_mcap
+from pytpc.recording.marks import Mark, write_marks
 
 LIMIT = "/tpc/arm/guard/limit/node_cpp_10"
 NEAR = "/tpc/arm/guard/near/node_cpp_11"
 USED = "/tpc/arm/guard/used/node_cpp_12"
 # time, topic, value, threshold, margin, result, flop, evaluations; worked out in export_samples.
+# The summary at 3.5 s has the first evaluation of ~near, too.
 EVALUATIONS = [
     (1.0, LIMIT, 4.0, 3.0, 1.0, True, False, 1),
     (2.0, LIMIT, 2.0, 3.0, -1.0, False, True, 1),
-    (2.5, NEAR, 5.0, 8.0, 1.5, True, False, 1),
+    (2.5, NEAR, 5.0, 8.0, 1.5, True, False, 0),
     (3.0, USED, 1.0, 1.0, None, True, False, 1),
     (3.5, NEAR, 9.0, 8.0, -0.5, False, True, 7),
     (4.0, LIMIT, 4.0, 3.5, 0.5, True, True, 1),
@@ -81,6 +85,22 @@ def test_the_values_of_a_node_with_summaries_alone_are_its_own() -> None:
     assert sorted(values) == [(NODE, ns(3.5), 4.0), ("/other", ns(1.5), 3.0)]
 
 
+# Under `light`, ~near turns at 2.9 s and 3.1 s: two reports of their own, which its summary of 7
+# evaluations has among its flops; then two reports and 5 others are 7. With 3 flops, one is untold.
+@pytest.mark.parametrize(("flops", "is_untold"), [(2, False), (3, True)])
+def test_what_a_summary_has_counts_once(flops: int, is_untold: bool) -> None:
+    recording = mission((2.9, 1, False, 9.0, 8.0, NODE), (3.1, 1, True, 5.0, 8.0, NODE))
+    many = replace(recording.summaries, flops=np.array([flops]))
+    found = exported(replace(recording, summaries=many))
+    near = [one.topic for one in found.series].index(NEAR)
+    (rows,) = found.rows(100)
+    own = rows.series == near
+    # The first one, at 2.5 s, was 0.1 s before the summary began, so that it may be in it.
+    assert rows.time_ns[own].tolist() == [ns(2.5), ns(2.9), ns(3.1), ns(3.5)]
+    assert rows.evaluations[own].tolist() == [0, 0, 0, 7]
+    assert rows.flop[own].tolist() == [False, True, True, is_untold]
+
+
 def test_each_mark_is_judged_by_those_up_to_it() -> None:
     found = exported()
     assert [(one.time_ns, one.mark) for one in found.suspects] == [(ns(4.5), 1), (ns(5.0), 2)]
@@ -91,6 +111,17 @@ def test_each_mark_is_judged_by_those_up_to_it() -> None:
     kinds = [line.kind for line in found.log]
     assert kinds.count("mark") == 2
     assert kinds.count("verdict") == 2
+
+
+# Both nodes run the same program; only the guard's ~limit turned.
+@pytest.mark.parametrize("is_marked", [True, False])
+def test_layouts_show_the_node_that_turned(is_marked: bool) -> None:
+    recording = mission(
+        (1.5, 0, True, 4.0, 3.0, "/arm/afar"), (4.1, 0, True, 4.0, 3.0, "/arm/afar")
+    )
+    found = exported(recording if is_marked else replace(recording, marks=()))
+    shown = [found.series[number] for number in found.first]
+    assert [one.node for one in shown if one.parameter == "~limit"] == [NODE]
 
 
 def messages_of(path: Path) -> dict[str, list[tuple[float, Any]]]:
@@ -136,6 +167,22 @@ def test_mcaps_own_reader_reads_it(mcap: Path) -> None:
 def test_the_ranks_are_those_of_each_period(mcap: Path) -> None:
     times = [time for time, _ in messages_of(mcap)["/tpc/ranks/limit"]]
     assert times == [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
+
+
+# Both are written by a part of their own; the file's reader and the table must agree on each.
+def test_ranks_in_the_file_are_those_of_the_table(mcap: Path, tmp_path: Path) -> None:
+    write_tables(exported(), tmp_path, "parquet")
+    rows = pq.read_table(tmp_path / "ranks.parquet").to_pylist()
+    table = {(r["time_ns"] / 1e9, r["parameter"]): [r["rank1"], r["rank2"]] for r in rows}
+    ranks = exported().ranks
+    assert len(rows) == ranks.combined.size > 0
+    for time, message in messages_of(mcap)["/tpc/ranks/limit"]:
+        assert [message.type1, message.type2] == table[time, "~limit"]
+    column = ranks.parameters.index("~limit")
+    assert [table[t / 1e9, "~limit"] for t in ranks.times_ns.tolist()] == [
+        [float(one[row, column]) for one in (ranks.rank1, ranks.rank2)]
+        for row in range(ranks.times_ns.size)
+    ]
 
 
 def test_rosbags_reads_it_by_the_definitions_in_it(mcap: Path) -> None:
@@ -302,3 +349,48 @@ def test_the_command_writes_several_at_once(tmp_path: Path) -> None:
     assert document["marks"] == 5
     assert document["outputs"] == {name.lstrip("-"): str(path) for name, path in outputs.items()}
     assert all(path.exists() for path in outputs.values())
+
+
+# The mission's own folder, its marks, and the marks of another mission stay as they are.
+@pytest.mark.parametrize(
+    ("words", "status", "said"),
+    [
+        (["--mcap", "."], 1, ".: it is a folder; give --mcap the path of a file"),
+        (["--mcap", "day/m.mcap"], 1, "day/m.mcap: --mcap would write into the recording"),
+        (["--csv", "day"], 1, "day/evaluations.csv: --csv would write into the recording"),
+        (["--csv", "link"], 1, "link/evaluations.csv: --csv would write into the recording"),
+        (["--csv", "other"], 1, "other/marks.csv: --csv would write into the recording"),
+        (["--marks", "more.csv", "--rerun", "more.csv"], 1, "more.csv: --rerun would write into"),
+        (["--mcap", "x", "--foxglove", "./x"], 2, "--mcap and --foxglove name the same file: x"),
+    ],
+)
+def test_what_is_read_and_marks_are_not_replaced(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: list[str], status: int, said: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    shutil.copytree(EXAMPLE, "day")
+    Path("link").symlink_to("day")
+    Path("other").mkdir()
+    for path in (Path("other/marks.csv"), Path("more.csv")):
+        write_marks([Mark(ns(1.0), "I")], path)
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+    ran = asked("export", "day", *words)
+    assert ran.exit_code == status, ran.output
+    assert said in " ".join(ran.stderr.split())
+    assert before == {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+
+
+def test_a_recording_that_is_a_file_is_not_replaced(tmp_path: Path) -> None:
+    source = tmp_path / "mission.mcap"
+    write_mcap(exported(), source)
+    before = source.read_bytes()
+    ran = asked("export", str(source), "--mcap", str(source), "--static", str(EXAMPLE))
+    assert ran.exit_code == 1
+    assert "--mcap would write into the recording" in ran.stderr
+    assert source.read_bytes() == before
+
+
+def test_both_kinds_of_tables_may_share_a_folder(tmp_path: Path) -> None:
+    ran = asked("export", str(EXAMPLE), "--csv", str(tmp_path), "--parquet", str(tmp_path))
+    assert ran.exit_code == 0, ran.stderr
+    assert len(list(tmp_path.iterdir())) == 2 * len(TABLES)

@@ -57,6 +57,27 @@ def test_drops_warn_for_half_a_minute():
     assert status(health, 50.1).level is Level.OK
 
 
+# An hour ago 7 reports were dropped; then one more, of which the node tells only by its settings.
+def test_what_was_dropped_before_we_listened_is_no_warning():
+    health = reporting()
+    health.tell_settings(settings(dropped=7), 9.0)
+    found = status(health, 9.6)
+    assert (found.level, dict(found.values)["reports dropped"]) == (Level.OK, "7")
+    # The same settings are told each second, until the node is asked again.
+    health.tell_settings(settings(dropped=8), 9.8)
+    health.tell_settings(settings(dropped=8), 9.9)
+    found = status(health, 10.0)
+    assert (found.level, found.message) == (Level.WARN, "8 reports dropped")
+
+
+# What its reports say is new, though it is less than what the node has dropped since its start.
+def test_drops_that_reports_tell_warn_beside_what_the_settings_say():
+    health = reporting()
+    health.tell_settings(settings(dropped=100), 9.0)
+    health.tell_dropped({("/guard", "site"): 3}, 9.2)
+    assert status(health, 9.6).level is Level.WARN
+
+
 def test_a_node_that_is_silent_is_stale():
     found = status(reporting(), 19.5)
     assert (found.level, found.message) == (Level.STALE, "no report for 10 s")

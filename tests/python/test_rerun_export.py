@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -16,7 +17,6 @@ from export_samples import exported
 from mission_samples import ns
 
 from patience import PATIENCE_S, wait_for
-from pytpc.base.signals import running
 from pytpc.present.viewers.rerun_export import write_rerun
 from terminals import pytpc
 
@@ -99,17 +99,12 @@ def test_a_recording_is_streamed_to_a_viewer(tmp_path: Path) -> None:
     env = {**os.environ, "HOME": str(tmp_path), "PYTHONPATH": str(EXAMPLE.parents[1])}
     words = ["--save", str(kept), "--port", str(port), "--bind", "127.0.0.1"]
     log = tmp_path / "viewer.txt"
-    # The command starts another process, the viewer itself.
-    with (
-        log.open("w") as output,
-        running(
-            lambda: subprocess.Popen(
-                [RERUN, *words], env=env, stdout=output, stderr=output, start_new_session=True
-            ),
-            PATIENCE_S,
-            PATIENCE_S,
-        ),
-    ):
+    with log.open("w") as output:
+        # The command starts the viewer itself as a process of its own.
+        viewer = subprocess.Popen(
+            [RERUN, *words], env=env, stdout=output, stderr=output, start_new_session=True
+        )
+    try:
         wait_for(lambda: is_open(port))
         address = f"127.0.0.1:{port}"
         said = subprocess.run(
@@ -121,6 +116,10 @@ def test_a_recording_is_streamed_to_a_viewer(tmp_path: Path) -> None:
             timeout=PATIENCE_S,
         )
         assert "passed on 12,797 evaluations" in said.stderr
+    finally:
+        os.killpg(viewer.pid, signal.SIGTERM)
+        viewer.wait(PATIENCE_S)
+        wait_for(lambda: not is_open(port))
     # So fast, most evaluations are left out.
     values = columns_of(kept, "Scalars:scalars")
     times = [time for time, _ in values["/mission/mission_timeout/mission_states_cpp_40/value"]]

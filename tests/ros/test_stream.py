@@ -140,7 +140,8 @@ def test_rospy_hears_of_nodes_drops_and_the_first_suspect(
     assert found["tpc: arm/guard"]["message"].startswith("no report for")
     stream.send_signal(signal.SIGINT)
     _, said = stream.communicate(timeout=PATIENCE_S)
-    assert stream.returncode == 130
+    # Nothing else ends it.
+    assert stream.returncode == 0
     assert "passed on 3 evaluations" in said
 
 

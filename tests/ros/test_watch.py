@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from patience import PATIENCE_S
 from pytpc.recording.marks import read_marks
 from pytpc.ros.ros1.graph import RosGraph
 from pytpc.ros.ros1.master import Master
@@ -54,7 +55,7 @@ class Node:
         self.publisher.publish("/threshold_information", encode_string(said))
 
     def wait_for_listeners(self, *names: str, topic: str = "/rosout") -> None:
-        until = time.monotonic() + 10
+        until = time.monotonic() + PATIENCE_S
         while not all(any(n in one for one in self.publisher.listeners(topic)) for n in names):
             assert time.monotonic() < until, self.publisher.listeners(topic)
             time.sleep(0.05)

@@ -51,7 +51,8 @@ class ExportedRows(NamedTuple):
     ``series`` are numbers of `MissionExport.series`. ``result`` is that of the whole condition,
     ``holds`` of this comparison, ``flop`` says that the result changed. A row of several
     ``evaluations`` is a summary: its time is the summary's end, its values are those of the last
-    one, and ``flop`` says that there was a change among them.
+    one, and ``flop`` says that there were changes among them that have no row. An evaluation that
+    a summary counts has 0 ``evaluations``, so that each counts once.
     """
 
     time_ns: Int64s

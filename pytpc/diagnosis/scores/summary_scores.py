@@ -34,7 +34,7 @@ from pytpc.recording.summaries import Summaries
 # How far the time of a report may be outside of the summary that has it: a report on /rosout has
 # the time at which it was written, and the two may come by different clocks. Under ``edges`` a
 # report is a flop or a first one, so that of others hardly any doubt is left.
-_FLOP_SLACK_NS = 100_000_000
+FLOP_SLACK_NS = 100_000_000
 _SLACK_NS = 1_000_000
 _TINY = 1e-200
 
@@ -203,7 +203,7 @@ def covered(events: Events, rows: Int64s, summaries: Summaries, own: Int64s) -> 
     covered = np.zeros(rows.size, np.bool_)
     times, nodes = events.time_ns[rows], events.node[rows]
     telling = events.flop[rows] | (events.previous[rows] < 0)
-    slack = np.where(telling, _FLOP_SLACK_NS, _SLACK_NS)
+    slack = np.where(telling, FLOP_SLACK_NS, _SLACK_NS)
     for code, node in enumerate(events.nodes):
         if node not in summaries.nodes:
             continue

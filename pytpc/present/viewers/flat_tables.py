@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.csv as pa_csv
@@ -21,11 +22,10 @@ from pytpc.base.wording import utf8_text
 from pytpc.diagnosis.results.exported import ExportedRows, MissionExport, Progress
 
 _PART = 1 << 16
-_STEPS = 1000
 _FORMULA = r"^[=+\-@\t\r]"
 _NUMERAL = r"^[+-]?[0-9.]+([eE][+-]?[0-9]+)?$"
 _OURS = ("relation",)
-_EVALUATIONS = "evaluations"
+_EVALUATIONS, _RANKS = "evaluations", "ranks"
 
 Write = Callable[[pa.Table], None]
 _TEXT, _NUMBER, _TIME = pa.string(), pa.float64(), pa.int64()
@@ -73,7 +73,7 @@ _SCHEMAS = {
         ("value_to_try", _TEXT),
         ("none", _NUMBER),
     ],
-    "ranks": [
+    _RANKS: [
         *_WHEN,
         ("parameter", _TEXT),
         ("rank1", _NUMBER),
@@ -94,25 +94,34 @@ def write_tables(
         found: the mission.
         folder: is made if it does not exist.
         kind: ``csv`` or ``parquet``.
-        on_progress: called with (evaluations written, all evaluations).
+        on_progress: called with (evaluations and ranks written, all of them).
 
     Raises:
         TpcError: a file cannot be written.
     """
+    done = 0
+
+    def tell(count: int) -> None:
+        nonlocal done
+        done += count
+        if on_progress is not None:
+            on_progress(done, found.count + found.ranks.combined.size)
+
+    large = {_EVALUATIONS: _write_evaluations, _RANKS: _write_ranks}
     for name, columns in _SCHEMAS.items():
         schema = pa.schema(columns)
         path = folder / f"{name}.{kind}"
         opened = _csv_writer(path, schema) if kind == "csv" else table_writer(path, schema)
         with opened as write:
-            if name == _EVALUATIONS:
-                _write_evaluations(found, schema, write, on_progress)
+            if name in large:
+                large[name](found, schema, write, tell)
                 continue
             for rows in _ROWS[name](found):
                 write(pa.Table.from_pylist(rows, schema))
 
 
 def _write_evaluations(
-    found: MissionExport, schema: pa.Schema, write: Write, on_progress: Progress | None
+    found: MissionExport, schema: pa.Schema, write: Write, tell: Callable[[int], None]
 ) -> None:
     about = {
         name: pa.array([utf8_text(getattr(one, field)) for one in found.series], _TEXT)
@@ -125,12 +134,9 @@ def _write_evaluations(
             ("key", "key"),
         )
     }
-    done = 0
     for rows in found.rows(_PART):
         write(_evaluations(rows, about, found.start_ns, schema))
-        done += rows.time_ns.size
-        if on_progress is not None:
-            on_progress(done, found.count)
+        tell(rows.time_ns.size)
 
 
 def _evaluations(
@@ -206,21 +212,27 @@ def _suspects(found: MissionExport) -> Iterator[list[dict[str, Any]]]:
     ]
 
 
-def _ranks(found: MissionExport) -> Iterator[list[dict[str, Any]]]:
+def _write_ranks(
+    found: MissionExport, schema: pa.Schema, write: Write, tell: Callable[[int], None]
+) -> None:
+    """A row for each time and parameter: of a day, millions."""
     ranks = found.ranks
-    names = [utf8_text(name) for name in ranks.parameters]
-    for begin in range(0, ranks.times_ns.size, _STEPS):
-        yield [
-            {
-                **_when(found, int(ranks.times_ns[row])),
-                "parameter": name,
-                "rank1": float(ranks.rank1[row, column]),
-                "rank2": float(ranks.rank2[row, column]),
-                "combined": float(ranks.combined[row, column]),
-            }
-            for row in range(begin, min(begin + _STEPS, ranks.times_ns.size))
-            for column, name in enumerate(names)
-        ]
+    names = pa.array([utf8_text(name) for name in ranks.parameters], _TEXT)
+    size = max(1, _PART // max(1, len(names)))
+    for begin in range(0, ranks.times_ns.size, size):
+        part = slice(begin, begin + size)
+        times = ranks.times_ns[part]
+        each = np.repeat(times, len(names))
+        columns: dict[str, Any] = {
+            "time_ns": each,
+            "seconds": (each - found.start_ns) / 1e9,
+            "parameter": names.take(pa.array(np.tile(np.arange(len(names)), times.size))),
+            "rank1": ranks.rank1[part].ravel(),
+            "rank2": ranks.rank2[part].ravel(),
+            "combined": ranks.combined[part].ravel(),
+        }
+        write(pa.table([pa.array(columns[name]) for name in schema.names], schema=schema))
+        tell(each.size)
 
 
 _ROWS: dict[str, Callable[[MissionExport], Iterator[list[dict[str, Any]]]]] = {
@@ -228,7 +240,6 @@ _ROWS: dict[str, Callable[[MissionExport], Iterator[list[dict[str, Any]]]]] = {
     "parameters": _parameters,
     "marks": _marks,
     "suspects": _suspects,
-    "ranks": _ranks,
 }
 
 

@@ -213,8 +213,9 @@ def _tab(
             "range",
             left="0.000000",
             right=f"{(found.end_ns - found.start_ns) / 1e9:.6f}",
-            bottom=f"{low - room:.6f}",
-            top=f"{high + room:.6f}",
+            # All digits: limits may be far below a millionth.
+            bottom=repr(low - room),
+            top=repr(high + room),
         )
         _sub(plot, "limitY")
         for curve, colour in curves:

@@ -7,7 +7,7 @@ kept in memory: what is written is merged by time from its streams.
 from __future__ import annotations
 
 import heapq
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -46,7 +46,7 @@ def write_mcap(found: MissionExport, path: Path, on_progress: Progress | None = 
     Args:
         found: the mission.
         path: the file, which is replaced.
-        on_progress: called with (evaluations written, all evaluations).
+        on_progress: called with (evaluations and ranks written, all of them).
 
     Raises:
         TpcError: it cannot be written.
@@ -55,9 +55,17 @@ def write_mcap(found: MissionExport, path: Path, on_progress: Progress | None = 
         writer = Writer(stream)
         writer.start(profile="ros2", library="pytpc")
         channels = _channels(writer, found)
+        done = 0
+
+        def tell(count: int) -> None:
+            nonlocal done
+            done += count
+            if on_progress is not None:
+                on_progress(done, found.count + found.ranks.combined.size)
+
         streams = (
-            _evaluations(found, on_progress),
-            _ranks(found),
+            _evaluations(found, tell),
+            _ranks(found, tell),
             _probabilities(found),
             sorted(_few(found)),
         )
@@ -107,28 +115,29 @@ def _channels(writer: Writer, found: MissionExport) -> dict[str, int]:
     return channels
 
 
-def _evaluations(found: MissionExport, on_progress: Progress | None) -> Iterator[_Message]:
+def _evaluations(found: MissionExport, tell: Callable[[int], None]) -> Iterator[_Message]:
     topics = [one.topic for one in found.series]
-    done = 0
     for rows in found.rows(_PART):
         columns = rows.time_ns.tolist(), rows.series.tolist(), messages.encode_rows(rows)
         for time_ns, series, data in zip(*columns, strict=True):
             yield _Message(time_ns, 0, topics[series], data)
-        done += rows.time_ns.size
-        if on_progress is not None:
-            on_progress(done, found.count)
+        tell(rows.time_ns.size)
 
 
-def _ranks(found: MissionExport) -> Iterator[_Message]:
-    ranks = found.ranks
-    for row, time_ns in enumerate(ranks.times_ns.tolist()):
-        for column, topic in enumerate(found.rank_topics):
-            fields = {
-                "type1": float(ranks.rank1[row, column]),
-                "type2": float(ranks.rank2[row, column]),
-                "combined": float(ranks.combined[row, column]),
-            }
-            yield _Message(time_ns, 1, topic, messages.encode(messages.RANK, fields))
+def _ranks(found: MissionExport, tell: Callable[[int], None]) -> Iterator[_Message]:
+    ranks, topics = found.ranks, found.rank_topics
+    if not topics:
+        return
+    size = max(1, _PART // len(topics))
+    for begin in range(0, ranks.times_ns.size, size):
+        part = slice(begin, begin + size)
+        columns = ranks.rank1[part], ranks.rank2[part], ranks.combined[part]
+        data = iter(messages.encode_ranks(*(one.ravel() for one in columns)))
+        times = ranks.times_ns[part].tolist()
+        for time_ns in times:
+            for topic in topics:
+                yield _Message(time_ns, 1, topic, next(data))
+        tell(len(times) * len(topics))
 
 
 def _probabilities(found: MissionExport) -> Iterator[_Message]:

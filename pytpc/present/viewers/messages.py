@@ -11,9 +11,11 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 
+from pytpc.base.columns import Floats
 from pytpc.diagnosis.results.exported import ExportedRows
 
 EVALUATION = "tpc_msgs/msg/Evaluation"
@@ -31,10 +33,10 @@ _FIELDS = {
 float64 value          # what was compared
 float64 threshold      # what it was compared with
 float64 margin         # above 0: the comparison holds; in the unit that the metadata says
-uint32 evaluations     # 1, or how many the summary has
+uint32 evaluations     # 1; 0 if a summary counts it; or how many the summary has
 bool result            # the result of the whole condition
 bool holds             # the result of this comparison
-bool flop              # the result changed
+bool flop              # the result changed; of a summary: changes that no other message tells
 """,
     PARAMETER: """\
 # From now on the parameter has this value.
@@ -87,6 +89,7 @@ _ROW = np.dtype(
         ("flop", "u1"),
     ]
 )
+_RANK_ROW = np.dtype([("head", np.uint8, 4), ("ranks", "<f8", 3)])
 _MOST = 2**32 - 1
 
 
@@ -120,7 +123,19 @@ def encode_rows(rows: ExportedRows) -> list[bytes]:
     for name in ("value", "threshold", "margin", "result", "holds", "flop"):
         found[name] = getattr(rows, name)
     found["evaluations"] = np.minimum(rows.evaluations, _MOST)
-    data, size = found.tobytes(), _ROW.itemsize
+    return _each(found)
+
+
+def encode_ranks(type1: Floats, type2: Floats, combined: Floats) -> list[bytes]:
+    """Each of some ranks (float64[n] each) as CDR, in their order."""
+    found = np.zeros(type1.size, _RANK_ROW)
+    found["head"] = _HEAD
+    found["ranks"] = np.stack([type1, type2, combined], axis=-1)
+    return _each(found)
+
+
+def _each(found: npt.NDArray[np.void]) -> list[bytes]:
+    data, size = found.tobytes(), found.itemsize
     return [data[at : at + size] for at in range(0, len(data), size)]
 
 

@@ -6,6 +6,8 @@ topics of the MCAP file without ``/tpc``.
 
 from __future__ import annotations
 
+import time
+from collections import defaultdict
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -14,13 +16,14 @@ import numpy as np
 
 from pytpc.base.atomic import replacing
 from pytpc.base.columns import Int64s
-from pytpc.base.errors import MissingToolError
+from pytpc.base.errors import MissingToolError, TpcError
 from pytpc.base.wording import plain
 from pytpc.diagnosis.results.exported import (
     ComparisonSeries,
     ExportedLine,
     ExportedRows,
     ExportedSuspects,
+    ExportedValue,
     MissionExport,
     Progress,
 )
@@ -73,7 +76,10 @@ def write_rerun(found: MissionExport, path: Path, on_progress: Progress | None =
         viewer.stream.send_recording_name(plain(found.name))
         viewer.describe(found.series)
         _write(viewer, found, on_progress)
-        viewer.close()
+        try:
+            viewer.close()
+        except RuntimeError as error:
+            raise TpcError(f"cannot be written: {error}", path) from error
 
 
 def _write(viewer: RerunViewer, found: MissionExport, on_progress: Progress | None) -> None:
@@ -84,8 +90,10 @@ def _write(viewer: RerunViewer, found: MissionExport, on_progress: Progress | No
         done += rows.time_ns.size
         if on_progress is not None:
             on_progress(done, found.count)
-    for topic in dict.fromkeys(one.topic for one in found.values):
-        values = [one for one in found.values if one.topic == topic]
+    by_topic: defaultdict[str, list[ExportedValue]] = defaultdict(list)
+    for value in found.values:
+        by_topic[value.topic].append(value)
+    for topic, values in by_topic.items():
         times = np.array([one.time_ns for one in values], np.int64)
         viewer.add_scalars(path_of(topic), times, [one.number for one in values])
     ranks = found.ranks
@@ -110,16 +118,17 @@ class RerunViewer:
 
     Args:
         rr: the module.
-        end_ns: a time on the clock of the robot, by which a simulator's clock is known.
+        end_ns: a time on the clock of the robot, by which a simulator's clock is known; None: the
+            first one that is sent.
 
     Attributes:
         stream: where it goes is still to be said.
     """
 
-    def __init__(self, rr: Any, end_ns: int) -> None:  # noqa: ANN401
+    def __init__(self, rr: Any, end_ns: int | None) -> None:  # noqa: ANN401
         """Nothing is sent yet."""
         self._rr = rr
-        self._is_simulated = end_ns < _SIMULATED
+        self._is_simulated = None if end_ns is None else end_ns < _SIMULATED
         self.stream: Any = rr.RecordingStream(_APPLICATION)
 
     def describe(self, series: Sequence[ComparisonSeries]) -> None:
@@ -181,13 +190,40 @@ class RerunViewer:
         times = np.array([at.time_ns], np.int64)
         self.stream.send_columns("suspects", [self._times(times)], columns)
 
-    def close(self) -> None:
-        """Send what waits."""
-        self.stream.flush()
-        self.stream.disconnect()
+    def reaches(self, patience_s: float) -> bool:
+        """Send what waits; False if nobody can get it any more.
+
+        A viewer that is only slow still gets it. Rerun does not connect again by itself.
+
+        Args:
+            patience_s: how long to wait at most.
+        """
+        until = time.monotonic() + patience_s
+        try:
+            self.stream.flush(timeout_sec=patience_s)
+        except RuntimeError:
+            # Rerun has one error for both; a connection that is lost fails at once.
+            return time.monotonic() >= until
+        return True
+
+    def close(self, patience_s: float = 1e38) -> None:
+        """Send or write what waits, and end.
+
+        Args:
+            patience_s: how long to wait at most; a viewer may be gone.
+
+        Raises:
+            RuntimeError: not all of it was sent or written.
+        """
+        try:
+            self.stream.flush(timeout_sec=patience_s)
+        finally:
+            self.stream.disconnect()
 
     def _times(self, times: Int64s) -> Any:  # noqa: ANN401
         column = self._rr.TimeColumn
+        if self._is_simulated is None and times.size:
+            self._is_simulated = bool(times[0] < _SIMULATED)
         if self._is_simulated:
             return column(TIME_LINE, duration=times.astype("timedelta64[ns]"))
         return column(TIME_LINE, timestamp=times.astype("datetime64[ns]"))
