@@ -13,13 +13,24 @@
 
 namespace tpc {
 
+bool Ring::makeRoom(const Config &C, LogFile *Now) {
+  const uint64_t Budget = C.RingBudgetMiB << 20;
+  const uint64_t Present = Now ? Now->diskBytes() : 0;
+  while (size().second + Present + C.segmentBytes() > Budget && removeOldest())
+    ;
+  // The next file may grow to the whole budget.
+  return Files.empty() || size().second + Present <= Budget;
+}
+
 LogFile *Ring::next(const Config &C, LogFile *Now, std::string &Why) {
+  if (!makeRoom(C, Now)) {
+    Why = Files.front().Path +
+          ": a thread does not finish a report to this file, so the file "
+          "cannot be removed";
+    return nullptr;
+  }
   if (!Name.Began)
     Name.Began = Clock::real() / 1'000'000'000;
-  uint64_t Budget = C.RingBudgetMiB << 20;
-  uint64_t Needed = C.segmentBytes() + (Now ? Now->diskBytes() : 0);
-  while (size().second + Needed > Budget && removeOldest())
-    ;
   LogFile *File = LogFile::open(C, &Name, Why);
   while (!File && removeOldest())
     File = LogFile::open(C, &Name, Why);
@@ -30,6 +41,8 @@ LogFile *Ring::next(const Config &C, LogFile *Now, std::string &Why) {
   Began = Clock::steady();
   return File;
 }
+
+int64_t Ring::heldSince() const { return Files.front().End; }
 
 int64_t Ring::dueAt(const Config &C) const {
   return Began + static_cast<int64_t>(C.RingNs / Config::Segments);

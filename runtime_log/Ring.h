@@ -29,9 +29,15 @@ struct Thread;
 
 class Ring {
 public:
-  /// Begins the next file. Makes room for it first: removes files until the
-  /// budget and, as far as that helps, the disk have space. If that fails,
-  /// returns null and sets \p Why.
+  /// Removes files until the budget has space for the next one. False if the
+  /// next one must not be begun: a thread is still inside a report to the
+  /// oldest file, and all files could take more than twice the budget.
+  bool makeRoom(const Config &C, LogFile *Now);
+  /// After makeRoom() has failed: when the oldest file was left, in steady
+  /// time.
+  int64_t heldSince() const;
+  /// Begins the next file. Makes room for it first, also on the disk as far as
+  /// removing files helps. If that fails, returns null and sets \p Why.
   LogFile *next(const Config &C, LogFile *Now, std::string &Why);
   /// Whether \p Now has its share of minutes or bytes, or has stopped.
   bool isDue(const Config &C, LogFile &Now, int64_t Steady) const;

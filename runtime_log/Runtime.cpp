@@ -338,15 +338,22 @@ void Runtime::turnRing(int64_t Now) {
   LogFile *Old = NowFile.load();
   if (Now < NextSegment || (Old && !Segments.isDue(Held, *Old, Now)))
     return;
+  const bool HasRoom = Segments.makeRoom(Held, Old);
+  // A thread that waits for a processor goes on soon.
+  if (!HasRoom && Now - Segments.heldSince() < Second) {
+    NextSegment = Now + PollNs;
+    return;
+  }
   // The slots of this period are in the old file.
-  if (Filled.Policy == Policy::Edges)
+  if (HasRoom && Filled.Policy == Policy::Edges)
     flush(/*IsEnd=*/true);
   std::string Why;
   LogFile *New = Segments.next(Held, Old, Why);
   if (!New) {
-    NextSegment = Now + AgainNs;
+    NextSegment = Now + (HasRoom ? AgainNs : Second);
     if (!std::exchange(HasToldOfRing, true))
-      warn(Why + "; the ring stops until a file can be written");
+      warn(Why + (HasRoom ? "; the ring stops until a file can be written"
+                          : "; no further file is begun until it can"));
     return;
   }
   HasToldOfRing = false;
@@ -531,7 +538,8 @@ int64_t Runtime::runDue(int64_t Now) {
   if (HasSeconds)
     Next = std::min(Next, NextSecond);
   if (RingRuns)
-    Next = std::min(Next, std::max(Segments.dueAt(Held), NextSegment));
+    Next =
+        std::min(Next, NextSegment > Now ? NextSegment : Segments.dueAt(Held));
   return Next;
 }
 

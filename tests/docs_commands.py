@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterator
+from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
@@ -29,6 +30,15 @@ PROGRAMS = re.compile(
     r"|rostopic|scp|source|ssh|sudo"
 )
 COMMENT = re.compile(r"\s+#( .*)?$")
+WATCH_A_GRAPH = (
+    "README.md",
+    "docs/how-to/live.md",
+    "docs/how-to/mark.md",
+    "docs/how-to/record.md",
+    "docs/how-to/view-elsewhere.md",
+)
+"""Half of the work: these pages wait for robots; tests/ros/test_docs_graphs.py reads them, while
+another worker reads the others in tests/ros/test_docs_commands.py."""
 
 
 class Command(NamedTuple):
@@ -123,6 +133,15 @@ def not_run() -> dict[str, dict[str, str]]:
     """Of each page the commands that no test runs, with the reason."""
     with NOT_RUN.open("rb") as stream:
         return tomllib.load(stream)
+
+
+def run_of(page: str) -> list[Command]:
+    """The commands of a page that are run."""
+    left_out = not_run().get(page, {})
+    found = [each for each in commands(page) if isinstance(each, Command)]
+    if find_spec("rerun") is None:  # It needs Python 3.11.
+        found = [each for each in found if "--rerun" not in each.text]
+    return [each for each in found if each.text not in left_out]
 
 
 def main() -> None:

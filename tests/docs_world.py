@@ -15,6 +15,7 @@ import sys
 import time
 from collections.abc import Sequence
 from contextlib import suppress
+from itertools import groupby
 from pathlib import Path
 from typing import NamedTuple
 
@@ -311,6 +312,14 @@ class Reader:
         words = ["env", "-i", *(f"{name}={value}" for name, value in self._world.env.items())]
         command = f"{self._before} && {text}"
         return Terminal([*words, "bash", "-c", command], self._world.home, columns=200, lines=50)
+
+
+def read_page(world: World, found: Sequence[Command]) -> None:
+    """Type the commands of a page, in a new home, and compare what the page shows."""
+    world.prepare(found)
+    with Reader(world) as reader:
+        for _, block in groupby(found, key=lambda command: command.block):
+            reader.read(list(block))
 
 
 def spelt(text: str) -> str:

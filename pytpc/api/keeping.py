@@ -113,9 +113,7 @@ def keep(options: KeepOptions, out: Path, stop: threading.Event | Stop | None = 
         # At once: the oldest file may be removed at any moment.
         found = _keep_files(options, new)
         listening = Listening(options, new)
-        until = time.monotonic() + _HEARD_S
-        while time.monotonic() < until and listening.is_alive() and not (stop and stop.is_set()):
-            time.sleep(_TURN_S)
+        _wait_until_it_hears(listening, stop)
         run = listening.finish()
         return _finished(options, _Gathered(new, found, run, listening.fault), out)
 
@@ -336,10 +334,10 @@ class _Part:
         self._end.close()
 
 
-def _wait_until_it_hears(listening: Listening, stop: threading.Event | Stop) -> None:
-    """Wait until it is connected to those who mark."""
+def _wait_until_it_hears(listening: Listening, stop: threading.Event | Stop | None) -> None:
+    """Wait until it is connected to the nodes; joining a graph may take longer than that."""
     until = float("inf")
-    while time.monotonic() < until and listening.is_alive() and not stop.is_set():
+    while time.monotonic() < until and listening.is_alive() and not (stop and stop.is_set()):
         if listening.has_begun:
             until = min(until, time.monotonic() + _HEARD_S)
         time.sleep(_TURN_S)

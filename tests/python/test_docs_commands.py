@@ -1,6 +1,6 @@
 """Which lines of a page are commands, and that each of them is run or listed with a reason.
 
-tests/ros/test_docs_commands.py runs them.
+tests/ros/test_docs_commands.py and test_docs_graphs.py run them.
 """
 
 from __future__ import annotations
@@ -9,7 +9,16 @@ from pathlib import Path
 
 import pytest
 
-from docs_commands import NOT_RUN, Command, Unclear, commands, not_run, pages
+from docs_commands import (
+    NOT_RUN,
+    WATCH_A_GRAPH,
+    Command,
+    Unclear,
+    commands,
+    not_run,
+    pages,
+    run_of,
+)
 from docs_world import NAMES, check_output, spelt
 
 PAGE = """# A page
@@ -109,6 +118,11 @@ def test_most_commands_are_run():
     listed = [each for each in everything if each.text in not_run().get(each.page, {})]
     assert len(everything) > 100
     assert 3 * len(listed) < len(everything)
+
+
+def test_pages_that_watch_a_graph_are_there():
+    assert set(WATCH_A_GRAPH) <= set(pages())
+    assert all(run_of(page) for page in WATCH_A_GRAPH)
 
 
 def test_names_of_the_reader_take_the_place_of_words():

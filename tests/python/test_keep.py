@@ -19,6 +19,7 @@ from click.testing import CliRunner
 from test_python_runtime_file import PRELUDE, ROOT
 
 from patience import PATIENCE_S, wait_for
+from pytpc.api import keeping
 from pytpc.api.keeping import KeepOptions, Listening, keep
 from pytpc.api.record import node_files
 from pytpc.base.errors import InputError, RunError
@@ -391,6 +392,24 @@ def test_a_mark_that_is_latched(tmp_path):
     for _ in range(2):
         third._hear(replace(once, topic="/ana/mark_action"), 0)
     assert third.marks >= 2
+
+
+def test_joining_a_graph_may_take_longer_than_listening(tmp_path, monkeypatch):
+    """It listens from when it has joined: values of parameters come only then."""
+    was_asked_to_end = []
+
+    class Late(Listening):
+        def run(self) -> None:
+            time.sleep(0.5)
+            was_asked_to_end.append(self._stop_asked.is_set())
+            self.has_begun = True
+            self._stop_asked.wait()
+
+    monkeypatch.setattr(keeping, "Listening", Late)
+    monkeypatch.setattr(keeping, "_HEARD_S", 0.05)
+    run(tmp_path / "tpc", "over(site('one'), 1, 2)")
+    keep(KeepOptions(tmp_path / "tpc", ros=1), tmp_path / "kept")
+    assert was_asked_to_end == [False]
 
 
 def test_left_folders_of_killed_runs(tmp_path):

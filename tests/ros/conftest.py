@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
+from docs_world import World
 from pytpc.build.build import BuildResult, build_workspace
 from pytpc.workspace.colcon import BuildOptions
 from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER, link_package
@@ -37,6 +38,14 @@ def study_out(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def water(study_out: Path) -> Built:
     """The robot in two languages, built where the study looks for it."""
     return build(WATER_SAMPLER, Console(quiet=True), system_folder(WATER_SAMPLER, study_out))
+
+
+@pytest.fixture(scope="session")
+def world(tmp_path_factory: pytest.TempPathFactory) -> World:
+    """The home of the reader of the docs, with a robot that is built and recorded."""
+    made = World(tmp_path_factory.mktemp("docs"))
+    made.build()
+    return made
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -72,6 +72,18 @@ for number in range(int(sys.argv[1])):
 time.sleep(0.5)
 """
 
+# 120,000 reports of 32 bytes, in a ring: 3.7 MiB.
+MUCH = """\
+from pytpc.python_runtime.find import ListedPlace
+from pytpc.python_runtime.listed import Listed
+from pytpc.python_runtime.runtime import RUNTIME
+from pytpc.python_runtime.sites import ComparisonSite
+listed = Listed("much", ">", 1, 1, None, None, None, "right", None)
+site = ComparisonSite("Gt", (RUNTIME.register(ListedPlace(listed, False)),))
+for number in range(120_000):
+    next(site.compare(float(number), 2.0))
+"""
+
 probe = subprocess.run([PYTHON, "-c", "import rospy"], check=False, capture_output=True, timeout=60)
 if probe.returncode:
     pytest.skip("rospy is not installed", allow_module_level=True)
@@ -228,6 +240,27 @@ def test_no_more_than_most(robot: Robot) -> None:
     assert json.loads(out)["marks"] == 3
     assert "1 mark without a recording: there are 1 recording with" in said
     assert len(list(robot.folder.glob("kept/*"))) == 1
+
+
+def test_no_more_than_most_mib(robot: Robot) -> None:
+    """Each recording has 3.7 MiB and some more; two have 6 MiB: the third mark is told only."""
+    env = {**robot.env, "TPC_SINK": "file"}
+    subprocess.run([sys.executable, "-c", MUCH], env=env, check=True, timeout=PATIENCE_S)
+    words = ["keep", "--on-marks", "--after", "0", "--most-mib", "6", "-o", "kept", "--json"]
+    keeping = robot.pytpc(*words)
+    try:
+        for count in range(2):
+            wait_for(lambda: list(robot.folder.glob("kept/.keep-*/mission.bag.active")))
+            robot.mark()
+            wait_for(lambda count=count: len(list(robot.folder.glob("kept/keep-*"))) > count)
+        robot.mark()
+        keeping.send_signal(signal.SIGINT)
+        out, said = keeping.communicate(timeout=PATIENCE_S)
+    finally:
+        keeping.kill()
+    assert out.count('"marks": 1,') == 2
+    assert "1 mark without a recording: there are 2 recordings with" in said
+    assert len(list(robot.folder.glob("kept/*"))) == 2
 
 
 def test_with_the_bag_of_the_same_node(robot: Robot) -> None:

@@ -116,6 +116,46 @@ int counted(const Arguments &A) {
     pause();
 }
 
+struct Stays {
+  std::atomic<uint64_t> Times, MayGoOn;
+} *StaysOfStuck;
+
+/// stuck FILE: the main thread reports one key and another one 19 others, until
+/// the program is killed. At SIGUSR1 the main thread stays where it is, which
+/// is inside a report unless a cap takes no time
+/// often it stayed, and how often it may go on.
+int stuck(const Arguments &A) {
+  static Keys K(20);
+  int File = open(A[0].c_str(), O_RDWR | O_CREAT, 0666);
+  if (File < 0 || ftruncate(File, sizeof(Stays)))
+    return 1;
+  StaysOfStuck = static_cast<Stays *>(mmap(
+      nullptr, sizeof(Stays), PROT_READ | PROT_WRITE, MAP_SHARED, File, 0));
+  sigset_t Its;
+  sigemptyset(&Its);
+  sigaddset(&Its, SIGUSR1);
+  pthread_sigmask(SIG_BLOCK, &Its, nullptr);
+  std::thread([] {
+    for (uint64_t I = 0;; ++I) {
+      report(K[1 + I % 19], I, 1);
+      if (I % 10 == 0)
+        std::this_thread::sleep_for(std::chrono::microseconds(1));
+    }
+  }).detach();
+  pthread_sigmask(SIG_UNBLOCK, &Its, nullptr);
+  struct sigaction Action{};
+  Action.sa_handler = [](int) {
+    uint64_t Time = ++StaysOfStuck->Times;
+    while (StaysOfStuck->MayGoOn < Time)
+      usleep(1000);
+  };
+  sigaction(SIGUSR1, &Action, nullptr);
+  std::puts("ready");
+  std::fflush(stdout);
+  for (uint64_t I = 0;; ++I)
+    report(K[0], I, 0);
+}
+
 /// Whether the folder of reports has a file whose name ends with \p End.
 bool hasFile(const std::string &End) {
   std::error_code None;
@@ -503,6 +543,7 @@ int main(int Count, char **Words) {
   const std::map<std::string, std::function<int(const Arguments &)>> Known = {
       {"threads", threads},
       {"counted", counted},
+      {"stuck", stuck},
       {"forked", forked},
       {"seldom", seldom},
       {"ends", ends},

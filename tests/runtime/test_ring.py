@@ -131,6 +131,107 @@ def test_within_the_budget_of_bytes(program, settings, tmp_path):
     assert 1 << 20 < most <= 4 << 20
 
 
+class Stuck:
+    """A program whose main thread can be held where it is, inside a report for the most part."""
+
+    def __init__(self, program: Path, settings: dict[str, str], folder: Path) -> None:
+        folder.mkdir()
+        self.folder = folder
+        self._stays = folder / "stays"
+        self._errors = folder / "errors"
+        with self._errors.open("wb") as errors:
+            self._process = subprocess.Popen(
+                [str(program), "stuck", str(self._stays)],
+                env={**settings, "TPC_FOLDER": str(folder)},
+                stdout=subprocess.PIPE,
+                stderr=errors,
+            )
+        assert self._process.stdout is not None
+        self._process.stdout.readline()
+
+    def hold(self) -> None:
+        """Until the main thread stays."""
+        before = self._times()[0]
+        self._process.send_signal(signal.SIGUSR1)
+        wait_for(lambda: self._times()[0] > before)
+
+    def let_go(self) -> None:
+        with self._stays.open("r+b") as stays:
+            stays.seek(8)
+            stays.write(struct.pack("<Q", self._times()[0]))
+
+    def said(self) -> str:
+        return self._errors.read_text()
+
+    def kill(self) -> None:
+        self._process.kill()
+        self._process.communicate()
+
+    def sizes(self) -> dict[int, int]:
+        """The bytes that each file has on the disk, by its number."""
+        found = {}
+        for path in self.folder.glob("*-????.tpc"):
+            try:
+                found[int(path.stem[-4:])] = path.stat().st_blocks * 512
+            except FileNotFoundError:
+                continue
+        return found
+
+    def _times(self) -> tuple[int, int]:
+        times, may_go_on = struct.unpack("<QQ", self._stays.read_bytes())
+        return times, may_go_on
+
+
+def test_a_thread_that_is_stuck_in_a_report(program, settings, tmp_path):
+    """The files take no more than twice the budget of 4 MiB; the ring goes on when it can."""
+    # With a cap, the main thread is nearly always inside a report, and writes little.
+    caps = {"TPC_RING": "10080", "TPC_RING_BUDGET": "4", "TPC_SITE_CAP": "10000"}
+    stuck = Stuck(program, {**settings, **caps}, tmp_path / "log")
+    wait_for(lambda: len(stuck.sizes()) > 1)
+
+    def is_held_up() -> bool:
+        sizes = stuck.sizes()
+        oldest = min(stuck.sizes())
+        # The oldest file goes first: if it is still there, all of them were there at once.
+        if oldest in sizes:
+            assert sum(sizes.values()) <= 8 << 20
+        if stuck.said():
+            return True
+        if oldest > held:
+            # It was between two reports: the file that was written then is gone.
+            hold()
+        return False
+
+    def hold() -> None:
+        nonlocal held
+        stuck.let_go()
+        stuck.hold()
+        held = max(stuck.sizes())
+
+    held = 0
+    hold()
+    wait_for(is_held_up)
+    last = max(stuck.sizes())
+    newest = next(stuck.folder.glob(f"*-{last:04}.tpc"))
+    # What is reported meanwhile is counted in the file that is full.
+    wait_for(lambda: log_file.read(newest).not_recorded > 0)
+    sizes = stuck.sizes()
+    assert min(sizes) <= held
+    assert max(sizes) == last
+    assert 4 << 20 < sum(sizes.values()) <= 8 << 20
+    stuck.let_go()
+    wait_for(lambda: min(stuck.sizes()) > last + 1)
+    wait_for(lambda: sum(stuck.sizes().values()) <= 4 << 20)
+    stuck.kill()
+    said = stuck.said().splitlines()
+    assert len(said) == 1
+    assert said[0].startswith(f"tpc: {newest}".removesuffix(f"{last:04}.tpc"))
+    assert said[0].endswith(
+        ".tpc: a thread does not finish a report to this file, so the file cannot be removed; "
+        "no further file is begun until it can"
+    )
+
+
 def test_within_the_minutes(program, settings, tmp_path):
     """Files of 3 s and an eighth of it stay: ten, one of them just left and one just begun."""
     counted = Counted(program, settings, tmp_path / "log", 1, 1000)
