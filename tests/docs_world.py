@@ -167,8 +167,8 @@ class World:
         shutil.copy(robot / "launch/robot.launch", home)
         node = (robot / "scripts/mission.py").read_text()
         # rospy does not survive a Ctrl-C while it asks for a parameter.
-        started = 'print("flying", flush=True)\nbegun ='
-        (home / "node.py").write_text(node.replace("begun =", started))
+        started = 'print("flying", flush=True)\nrospy.Timer('
+        (home / "node.py").write_text(node.replace("rospy.Timer(", started))
         shutil.copy(ROOT / "tests/docs/params.yaml", home)
         shutil.copy(ROOT / "examples/recorded_mission/static.json", home / "uav.json")
         shutil.copy(home / "mission/mission.bag", home / "my.bag")
