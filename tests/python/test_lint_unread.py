@@ -24,7 +24,7 @@ def test_a_misspelt_name_has_the_one_that_was_meant():
 
 def test_the_right_name_where_only_the_running_node_knows_its_namespace():
     guard = node(read("/robot/guard/<dynamic>/tolerance"), read("/robot/guard/fast/tolerance"))
-    [(_, text)] = said(unread(facts({"/robot/guard/slow/tolerence": 0.4}, guard)).findings)
+    [(_, text)] = said(unread(facts({"/robot/guard/slow/tolernace": 0.4}, guard)).findings)
     assert text.partition("; ")[2].startswith("did you mean /robot/guard/slow/tolerance")
 
 
@@ -145,7 +145,7 @@ def test_a_misspelt_name_in_a_namespace_that_is_read_one_by_one():
         read("/<dynamic>", is_table=True), read("/robot/guard/layer/height", 1.0),
         texts=frozenset({"layer"}),
     )  # fmt: skip
-    values = {"/robot/guard/layer/heigth": 2.0, "/robot/guard/layer/height": 1.0}
+    values = {"/robot/guard/layer/heihgt": 2.0, "/robot/guard/layer/height": 1.0}
     assert [line for line, _ in said(unread(facts(values, guard)).findings)] == [1]
 
 
