@@ -54,7 +54,8 @@ class Engine:
         Raises:
             TpcError: a task could not be done, or the cluster is gone.
         """
-        return self._made(task, items, None, on_progress)
+        found: list[Result] = self._made(task, items, None, on_progress)
+        return found
 
     def joined(
         self,
@@ -96,8 +97,8 @@ class Engine:
         join: Callable[[list[Any]], Any] | None,
         told: Progress,
     ) -> Any:  # noqa: ANN401
-        from dask import delayed  # noqa: PLC0415 - an extra
-        from dask.callbacks import Callback  # noqa: PLC0415 - an extra
+        from dask import delayed  # noqa: PLC0415 - it takes a second
+        from dask.callbacks import Callback  # noqa: PLC0415 - it takes a second
 
         leaves = [delayed(task, pure=False)(item) for item in items]
         names = {leaf.key for leaf in leaves}
@@ -123,10 +124,10 @@ class Engine:
         join: Callable[[list[Any]], Any] | None,
         told: Progress,
     ) -> Any:  # noqa: ANN401
-        from concurrent.futures import CancelledError  # noqa: PLC0415 - with Dask alone
+        from concurrent.futures import CancelledError  # noqa: PLC0415
 
-        from distributed import wait  # noqa: PLC0415 - an extra
-        from distributed.scheduler import KilledWorker  # noqa: PLC0415 - an extra
+        from distributed import wait  # noqa: PLC0415 - it takes a second
+        from distributed.scheduler import KilledWorker  # noqa: PLC0415 - it takes a second
 
         client, total, done = self.client, len(items), itertools.count(1)
         leaves = client.map(task, items, pure=False)
@@ -165,19 +166,13 @@ def engine(cluster: str | None = None, workers: int | None = None) -> Iterator[E
 
     Raises:
         InputError: the address is none, or nothing answers there.
-        TpcError: Dask is not installed.
     """
     count = workers or len(os.sched_getaffinity(0))
-    try:
-        import dask  # noqa: PLC0415 - an extra
-    except ImportError as error:
-        raise TpcError(
-            "fleets need more packages; install them with: pip install 'pytpc[fleet]'"
-        ) from error
     if cluster is None:
         yield Engine(count)
         return
-    import distributed  # noqa: PLC0415 - it takes a second
+    import dask  # noqa: PLC0415 - both take a second
+    import distributed  # noqa: PLC0415
 
     # What a worker that ends says of its own connections is nothing for the user.
     logging.getLogger("distributed").setLevel(logging.CRITICAL)

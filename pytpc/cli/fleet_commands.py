@@ -50,26 +50,16 @@ _SAID = 5
 _UNITS = ("B", "kB", "MB", "GB", "TB")
 
 
-class _Day(click.ParamType):
-    """A day as ``2026-11-30``."""
-
-    name = "day"
-
-    def convert(self, value: str, param: click.Parameter | None, ctx: click.Context | None) -> str:
-        """The day.
-
-        Raises:
-            click.BadParameter: it is none.
-        """
-        if not _DAY.fullmatch(value):
-            self.fail(f"{value!r} is no day; give it as 2026-11-30", param, ctx)
-        return value
+def _day(_context: click.Context, _option: click.Parameter, value: str | None) -> str | None:
+    if value is not None and not _DAY.fullmatch(value):
+        raise click.BadParameter(f"{value!r} is no day; give it as 2026-11-30")
+    return value
 
 
 FLEET = click.argument("fleet", metavar="FLEET")
 ROBOTS = click.option("--robot", "robots", multiple=True, help="Only this robot; may be repeated.")
-SINCE = click.option("--since", type=_Day(), metavar="DAY", help="Only from this day on.")
-UNTIL = click.option("--until", type=_Day(), metavar="DAY", help="Only up to this day.")
+SINCE = click.option("--since", callback=_day, metavar="DAY", help="Only from this day on.")
+UNTIL = click.option("--until", callback=_day, metavar="DAY", help="Only up to this day.")
 BUILD = click.option("--build", metavar="HASH", help="Only of this build; its first characters.")
 PARQUET = click.option("--parquet", type=PATH, metavar="FILE", help="Write the table to this file.")
 CLUSTER = click.option(
@@ -158,7 +148,7 @@ class _AddArguments:
     metavar="NAME",
     help="The robot. [default: the first folder below PATH that has missions, else PATH's name]",
 )
-@click.option("--day", type=_Day(), metavar="DAY", help="The day. [default: by their clocks]")
+@click.option("--day", callback=_day, metavar="DAY", help="The day. [default: by their clocks]")
 @click.option(
     "--static",
     "static_source",

@@ -222,12 +222,8 @@ class Fleet:
 
     @cached_property
     def _opened(self) -> tuple[Any, str]:
-        try:
-            from fsspec.core import url_to_fs  # noqa: PLC0415 - an extra
-        except ImportError as error:
-            raise TpcError(
-                "fleets need more packages; install them with: pip install 'pytpc[fleet]'"
-            ) from error
+        from fsspec.core import url_to_fs  # noqa: PLC0415 - only fleets need it
+
         try:
             fs, root = url_to_fs(self.url, **self.options)
         except (ImportError, ValueError) as error:
