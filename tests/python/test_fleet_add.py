@@ -17,8 +17,8 @@ import pyarrow.dataset as ds
 import pyarrow.parquet as pq
 import pytest
 from click.testing import CliRunner
-from fleet_samples import EXAMPLE, mission
 from fsspec.implementations.memory import MemoryFileSystem
+from recorded_fleet import EXAMPLE, mission
 
 from patience import PATIENCE_S, wait_for
 from pytpc.api.dask_engine import engine

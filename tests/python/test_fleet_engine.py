@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from fleet_samples import dies_once, fails, joined, square
+from recorded_fleet import dies_once, fails, joined, square
 
 from patience import PATIENCE_S, wait_for
 from pytpc.api.dask_engine import engine
