@@ -104,10 +104,14 @@ class Selection:
         )
 
 
+EVERY = Selection()
+"""All missions."""
+
+
 def missions(
     fleet: Fleet,
     engine: Engine,
-    selection: Selection = Selection(),
+    selection: Selection = EVERY,
     on_progress: Callable[[int, int], None] | None = None,
 ) -> Missions:
     """The missions of a data set.
