@@ -29,7 +29,7 @@ _SHORT_TEXT = 16
 _OUTCOMES = layout.RESULT_BIT | layout.OUTCOME_BIT
 
 
-def header(  # noqa: PLR0913 - the fields of a header
+def header(
     node: str,
     *,
     host: str = "",
