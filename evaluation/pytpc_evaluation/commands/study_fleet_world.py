@@ -36,7 +36,7 @@ _ONE = click.IntRange(min=1)
 @click.option("--days", type=_ONE, default=_PLAIN.days, show_default=True, help="On how many days.")
 @click.option(
     "--reports",
-    type=click.IntRange(min=10_000),
+    type=click.IntRange(min=60_000),
     default=_PLAIN.reports,
     show_default=True,
     help="About how many reports a mission has, 32 bytes each.",

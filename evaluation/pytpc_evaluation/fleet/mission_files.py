@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -140,6 +141,8 @@ class MissionWriter:
             stream.write(head)
             stream.write(system_chunks(system))
             stream.writelines(chunk.data for chunk in in_order(chunks))
+        written = (plan.true_ns + round(self.world.settings.seconds * _SECOND)) // _SECOND
+        os.utime(path, (written, written))
         return sum(one.size for one in threads)
 
     # --- everything else

@@ -103,7 +103,7 @@ def _bumps(rng: np.random.Generator, count: int) -> Floats:
     made = np.zeros(count)
     for number, kind in enumerate(kinds.tolist()):
         low, high = LARGE if kind == 2 else SMALL
-        height, width = rng.uniform(low, high), slot * rng.uniform(0.25, 0.45)
+        height, width = rng.uniform(low, high), slot * rng.uniform(0.3, 0.45)
         middle = slot * (number + rng.uniform(0.3, 0.7))
         if kind:
             inside = np.abs(at - middle) < width / 2

@@ -142,7 +142,7 @@ DECISIONS = (
     Decision(6, Kind.FLAG, "allow_reverse", "flag", "", places=1),
 )
 
-GAINS = {
+GAINS: dict[str, dict[str, float | str]] = {
     "navigator": {"path_weight": 32.0, "goal_weight": 24.0, "frame_id": "map"},
     "driver": {"current_gain": 0.8, "wheel_radius": 0.165},
 }

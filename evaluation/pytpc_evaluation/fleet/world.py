@@ -52,7 +52,7 @@ _OBSERVERS = ("anna", "ben")
 _SEEN, _SEEN_TWICE, _ABSENT = 0.4, 0.25, 0.1
 _ALARM_BAD, _ALARM_GOOD = 0.2, 0.06
 _DELAY_S = (0.5, 3.0)
-_SHORTEST_S = 0.2
+_SHORTEST_S = 0.4
 _TYPED = (0.7, 0.1, 0.2)
 _RIGHT, _OTHER = 0, 1
 
@@ -121,7 +121,8 @@ class Drift:
 class MissionPlan:
     """A mission: whose, when, with which values; ``wrong`` is the wrong one of them, if any.
 
-    ``values`` are those of all parameters by `parameter_of`, ``start_ns`` is on the robot's clock.
+    ``values`` are those of all parameters by `parameter_of`. ``start_ns`` is on the robot's clock,
+    ``true_ns`` on one that is right.
     """
 
     number: int
@@ -129,6 +130,7 @@ class MissionPlan:
     day: int
     name: str
     start_ns: int
+    true_ns: int
     older: bool
     values: dict[str, SetTo]
     wrong: WrongValue | None
@@ -242,18 +244,18 @@ class World:
         )
         rng = np.random.default_rng([settings.seed, 2, number])
         began = _FIRST_DAY + timedelta(days=day) + (turn - first) * _BETWEEN
-        began += timedelta(seconds=float(rng.integers(0, 600)), milliseconds=robot)
+        began += timedelta(seconds=int(rng.integers(600)))
         name = f"{self.robot_name(robot)}-{began:%Y-%m-%d}-{turn - first + 1}"
-        if robot == self.clock_off:
-            began += _CLOCK_OFF
         wrong = self._drawn_wrong(robot, rng) if rng.random() < settings.bad else None
         values = self._values(robot)
         decoy = self._decoy(values, wrong, rng)
         if wrong is not None:
             values[parameter_of(wrong.decision)] = SetTo(wrong.value, "release")
-        start_ns = round(began.timestamp()) * 10**9 + int(rng.integers(10**9))
+        true_ns = round(began.timestamp()) * 10**9 + int(rng.integers(10**9))
+        off = _CLOCK_OFF if robot == self.clock_off else timedelta()
+        start_ns = true_ns + round(off.total_seconds()) * 10**9
         older = robot == self.older and day == 0
-        return MissionPlan(number, robot, day, name, start_ns, older, values, wrong, decoy)
+        return MissionPlan(number, robot, day, name, start_ns, true_ns, older, values, wrong, decoy)
 
     def _drawn_wrong(self, robot: int, rng: np.random.Generator) -> WrongValue:
         may = [robot in one.robots for one in self.culprits]
@@ -348,12 +350,13 @@ class World:
 
 def _spans(wrong: Bools, seconds: float) -> tuple[tuple[float, float], ...]:
     """From when to when (s) it was wrong, for a time that can be seen."""
-    edges = np.flatnonzero(np.diff(np.r_[False, wrong, False]))
-    spans = (edges.reshape(-1, 2) / KNOTS_HZ).tolist()
+    edges = np.flatnonzero(np.diff(np.r_[False, wrong, False])).reshape(-1, 2)
+    # To the last knot that is wrong: up to there all values in between are, too.
+    spans = ((edges - [0, 1]) / KNOTS_HZ).tolist()
     return tuple(
         (begin, min(end, seconds))
         for begin, end in spans
-        if end - begin >= _SHORTEST_S and begin < seconds - _SHORTEST_S
+        if min(end, seconds) - begin >= _SHORTEST_S
     )
 
 
