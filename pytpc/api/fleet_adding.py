@@ -8,7 +8,6 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timezone
-from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Literal, NamedTuple, get_args
@@ -43,6 +42,10 @@ _FIRST_REAL_NS = 10**18
 """Before 2001 no robot had reports: such a clock is simulated, or was never set."""
 _DAY_NS = 86_400 * 10**9
 _DAYS_APART = 2
+_ROOT, _ROOTED = b'"source_root"', b'"source_root": "/'
+_MOST_KNOWN = 8
+_KNOWN: dict[tuple[bytes, Path | None], tuple[StaticInfo, bytes]] = {}
+"""Static information that this process has read, by its content."""
 
 
 class Given(NamedTuple):
@@ -287,11 +290,20 @@ def _static_for(path: Path, recording: Recording, given: Path | None) -> tuple[S
     source = given
     if source is None:
         source = recorded_static(path, recording) or find_static(path, recording).path
-    return _merged(source, source.stat().st_mtime_ns)
+    if not source.is_file():
+        return _merged(source)
+    content = source.read_bytes()
+    # Missions of one build have copies of one file, which mostly has absolute paths alone.
+    is_rooted = content.count(_ROOTED) == content.count(_ROOT)
+    known = _KNOWN.get((content, None if is_rooted else source.parent))
+    if known is None:
+        if len(_KNOWN) >= _MOST_KNOWN:
+            _KNOWN.clear()
+        known = _KNOWN[content, None if is_rooted else source.parent] = _merged(source)
+    return known
 
 
-@lru_cache(maxsize=8)
-def _merged(source: Path, _changed: int) -> tuple[StaticInfo, bytes]:
+def _merged(source: Path) -> tuple[StaticInfo, bytes]:
     static = load_static(source)
     return static, dump_json(static.to_json())
 

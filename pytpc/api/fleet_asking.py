@@ -5,19 +5,33 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from pathlib import Path
 from typing import NamedTuple
 
 import pyarrow as pa
 
 from pytpc.api.dask_engine import Engine
-from pytpc.api.fleet_judging import judged
-from pytpc.api.fleet_missions import EVERY, FleetMission, Selection, Unread, build_of, missions
+from pytpc.api.fleet_judging import judged, spread
+from pytpc.api.fleet_missions import (
+    EVERY,
+    FleetMission,
+    Selection,
+    Unread,
+    build_of,
+    missions,
+    opened,
+)
+from pytpc.api.learning import learn
 from pytpc.base.errors import InputError
+from pytpc.diagnosis.fleet.drifting import fleet_drift
+from pytpc.diagnosis.fleet.outliers import fleet_outliers
 from pytpc.diagnosis.fleet.ranking import rank_fleet
 from pytpc.diagnosis.fleet.rows import COLUMNS, Rows
-from pytpc.diagnosis.results.fleet import FleetRanking
+from pytpc.diagnosis.fleet.settings import Settings
+from pytpc.diagnosis.results.fleet import FleetDrifts, FleetOutliers, FleetRanking
 from pytpc.fleet.store import Fleet
 from pytpc.fleet.tables import COMPARISONS, VALUES, WORD
+from pytpc.recording.profile import LearnedRun
 from pytpc.static.other_builds import keys_in, renamed
 
 Progress = Callable[[int, int], None]
@@ -204,3 +218,75 @@ def rank(
     found = judged(fleet, engine, asked.missions, asked.build, on_progress)
     ranking = rank_fleet(asked.rows, values=asked.digests.values, diagnoses=found.rows)
     return Ranked(ranking, asked.missions, (*asked.digests.unread, *found.unread))
+
+
+class Drifts(NamedTuple):
+    """Which margins drift, and the missions that could not be read."""
+
+    drifts: FleetDrifts
+    unread: tuple[Unread, ...]
+
+
+def drift(
+    fleet: Fleet,
+    engine: Engine,
+    selection: Selection = EVERY,
+    on_progress: Progress | None = None,
+) -> Drifts:
+    """Which thresholds creep towards turning, and when they will turn; see ``rank``."""
+    asked = ask(fleet, engine, selection, on_progress=on_progress)
+    return Drifts(fleet_drift(asked.rows), asked.digests.unread)
+
+
+class Outliers(NamedTuple):
+    """Which robots differ from their sisters, and the missions that could not be read."""
+
+    outliers: FleetOutliers
+    unread: tuple[Unread, ...]
+
+
+def outliers(
+    fleet: Fleet,
+    engine: Engine,
+    selection: Selection = EVERY,
+    on_progress: Progress | None = None,
+) -> Outliers:
+    """Which robots have settings, or decide, as none of their sisters; see ``rank``."""
+    asked = ask(fleet, engine, selection, with_values=True, on_progress=on_progress)
+    rows = asked.rows
+    settings = Settings.of(rows, asked.digests.values)
+    return Outliers(fleet_outliers(rows, settings), asked.digests.unread)
+
+
+def learn_good(
+    fleet: Fleet,
+    found: Sequence[FleetMission],
+    profile: Path,
+    most: int,
+    on_progress: Progress | None = None,
+) -> list[LearnedRun]:
+    """Put good missions into a profile: of each robot about as many, evenly over its time.
+
+    Args:
+        fleet: the data set.
+        found: the missions, of which the good ones count.
+        profile: its folder; it is made.
+        most: how many missions at most.
+        on_progress: called with (done, in all).
+
+    Raises:
+        InputError: there is no good mission, or one is broken, or ``profile`` is something else.
+        TpcError: the profile cannot be written, or the store does not answer.
+    """
+    chosen = spread([one for one in found if not one.is_bad], most)
+    if not chosen:
+        raise InputError("no good missions: add some, or select others", Path(fleet.url))
+    learned = []
+    for number, one in enumerate(chosen, start=1):
+        with opened(fleet, one.place) as mission:
+            source = mission.run.source
+            assert source is not None, "it was written to a folder"
+            learned.append(learn(mission.run.recording, source, profile))
+        if on_progress is not None:
+            on_progress(number, len(chosen))
+    return learned
