@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -12,19 +13,17 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import pyarrow as pa
+import pyarrow.parquet as pq
 
 from pytpc.api.comparing import RecordedRun
 from pytpc.api.dask_engine import Engine
-from pytpc.base.atomic import write_atomic
 from pytpc.base.closest import did_you_mean
-from pytpc.base.errors import InputError
+from pytpc.base.errors import InputError, TpcError
 from pytpc.base.paths import MERGED_FILE
 from pytpc.base.wording import plain
 from pytpc.fleet.store import Fleet, Place
 from pytpc.fleet.tables import COMMIT, MISSIONS
-from pytpc.recording.events import Events
 from pytpc.recording.mission import EVENTS_FILE, SUMMARIES_FILE, load_recording
-from pytpc.recording.summaries import Summaries
 from pytpc.static.static_info import StaticInfo
 
 _TOLD = tuple(name for name in MISSIONS.names if name not in {"files", "stamp"})
@@ -197,17 +196,27 @@ def write_folder(fleet: Fleet, place: Place, folder: Path) -> None:
     rows = fleet.read(place, COMMIT, ["build", "files"]).to_pylist()
     if not rows:
         raise InputError(f"has no mission {plain('/'.join(place))}", Path(fleet.url))
-    events = Events.from_arrow(fleet.read(place, "reports"))
-    summaries = Summaries.from_arrow(fleet.read(place, "summaries"))
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, content in rows[0]["files"]:
-        # A name from somebody else's data set.
-        if name == os.path.basename(name) and name not in {"", ".", ".."}:  # noqa: PTH119
-            write_atomic(folder / name, content)
-    write_atomic(folder / MERGED_FILE, fleet.build(rows[0]["build"]))
+    files = dict(rows[0]["files"]) | {MERGED_FILE: fleet.build(rows[0]["build"])}
+    tables = {EVENTS_FILE: fleet.read(place, "reports")}
+    summaries = fleet.read(place, "summaries")
     if len(summaries):
-        summaries.write(folder / SUMMARIES_FILE)
-    events.write(folder / EVENTS_FILE)
+        tables[SUMMARIES_FILE] = summaries
+    try:
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        staged = Path(tempfile.mkdtemp(prefix=f".{folder.name[:60]}.", dir=folder.parent))
+        try:
+            for name, content in files.items():
+                # A name from somebody else's data set.
+                if name == os.path.basename(name) and name not in {"", ".", ".."}:  # noqa: PTH119
+                    (staged / name).write_bytes(content)
+            for name, table in tables.items():
+                pq.write_table(table, staged / name, compression="zstd")
+            staged.chmod(0o755)
+            staged.replace(folder)
+        finally:
+            shutil.rmtree(staged, ignore_errors=True)
+    except OSError as error:
+        raise TpcError(f"cannot be written: {error.strerror or error}", folder) from error
 
 
 class Opened(NamedTuple):
