@@ -22,15 +22,24 @@ from pytpc.api.fleet_missions import (
     opened,
 )
 from pytpc.api.learning import learn
+from pytpc.api.missions import with_names_of
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.fleet.drifting import fleet_drift
+from pytpc.diagnosis.fleet.finding import TurnQuery, find_missions, turns_in
 from pytpc.diagnosis.fleet.outliers import fleet_outliers
 from pytpc.diagnosis.fleet.ranking import rank_fleet
 from pytpc.diagnosis.fleet.rows import COLUMNS, Rows
 from pytpc.diagnosis.fleet.settings import Settings
-from pytpc.diagnosis.results.fleet import FleetDrifts, FleetOutliers, FleetRanking
-from pytpc.fleet.store import Fleet
+from pytpc.diagnosis.results.fleet import (
+    FleetDrifts,
+    FleetOutliers,
+    FleetRanking,
+    FoundMission,
+    FoundTurn,
+)
+from pytpc.fleet.store import Fleet, Place
 from pytpc.fleet.tables import COMPARISONS, VALUES, WORD
+from pytpc.recording.parameter_values import ParameterValues, SetValue
 from pytpc.recording.profile import LearnedRun
 from pytpc.static.other_builds import keys_in, renamed
 
@@ -290,3 +299,68 @@ def learn_good(
         if on_progress is not None:
             on_progress(number, len(chosen))
     return learned
+
+
+class Finding(NamedTuple):
+    """The missions and their turns that were asked for, by time; and what could not be read."""
+
+    found: list[tuple[FoundMission, tuple[FoundTurn, ...]]]
+    unread: tuple[Unread, ...]
+
+
+class _Search(NamedTuple):
+    fleet: Fleet
+    place: Place
+    build: str
+    query: TurnQuery
+
+
+def find(
+    fleet: Fleet,
+    engine: Engine,
+    query: TurnQuery,
+    selection: Selection = EVERY,
+    on_progress: Progress | None = None,
+) -> Finding:
+    """In which missions, and when, a comparison turned.
+
+    Args:
+        fleet: the data set.
+        engine: where the tasks run, one for each mission whose digest fits.
+        query: what is looked for.
+        selection: which missions.
+        on_progress: called with (done, in all).
+
+    Raises:
+        InputError: as ``rank``, or no comparison is meant.
+        TpcError: the store does not answer.
+    """
+    asked = ask(fleet, engine, selection, on_progress=on_progress)
+    likely = find_missions(asked.rows, query)
+    jobs = [
+        _Search(fleet, Place(one.robot, one.day, one.mission), asked.build, query) for one in likely
+    ]
+    turns = engine.map(_turns, jobs, on_progress)
+    unread = [one for _, why in turns for one in why]
+    found = [(one, own) for one, (own, _) in zip(likely, turns, strict=True) if own]
+    return Finding(found, (*asked.digests.unread, *unread))
+
+
+def _turns(job: _Search) -> tuple[tuple[FoundTurn, ...], tuple[Unread, ...]]:
+    """The task of one mission."""
+    try:
+        static = build_of(job.fleet, job.build)
+        with opened(job.fleet, job.place) as mission:
+            run = mission.run.in_build(static)
+            named = with_names_of(run.recording, static, run.source)
+            at_first = run.values.values or {}
+            values = ParameterValues(
+                [
+                    *(SetValue(-(2**63), name, value) for name, value in at_first.items()),
+                    *run.recording.values,
+                ]
+            )
+            robot = job.place.robot
+            return turns_in(run.recording, named, job.query, robot=robot, values=values), ()
+    except InputError as error:
+        return (), (Unread(job.place, error.message),)

@@ -6,15 +6,14 @@ import re
 import shlex
 import sys
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
-from pytpc.api.dask_engine import Engine, engine
+from pytpc.api.dask_engine import engine
 from pytpc.api.fleet_adding import (
     KEEPS,
     VERDICTS,
@@ -29,7 +28,6 @@ from pytpc.api.fleet_missions import (
     FleetMission,
     Missions,
     Selection,
-    Unread,
     meant,
     missions,
     table_of,
@@ -41,78 +39,15 @@ from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import JSON, PATH, as_object
 from pytpc.cli.console import console, print_json, progress, tell_next, warn
 from pytpc.cli.console import table_of as text_table
+from pytpc.cli.fleet_answers import COMMANDS as ANSWERS
+from pytpc.cli.fleet_options import PARQUET, day_given, selecting, store_options, tell_unread
 from pytpc.cli.lines import say
-from pytpc.fleet.store import PATIENCE_S, Fleet
+from pytpc.fleet.store import Fleet
 
 Command = TypeVar("Command", bound=Callable[..., object])
 _DAY = re.compile(r"\d{4}-\d\d-\d\d")
 _SAID = 5
 _UNITS = ("B", "kB", "MB", "GB", "TB")
-
-
-def _day(_context: click.Context, _option: click.Parameter, value: str | None) -> str | None:
-    if value is not None and not _DAY.fullmatch(value):
-        raise click.BadParameter(f"{value!r} is no day; give it as 2026-11-30")
-    return value
-
-
-FLEET = click.argument("fleet", metavar="FLEET")
-ROBOTS = click.option("--robot", "robots", multiple=True, help="Only this robot; may be repeated.")
-SINCE = click.option("--since", callback=_day, metavar="DAY", help="Only from this day on.")
-UNTIL = click.option("--until", callback=_day, metavar="DAY", help="Only up to this day.")
-BUILD = click.option("--build", metavar="HASH", help="Only of this build; its first characters.")
-PARQUET = click.option("--parquet", type=PATH, metavar="FILE", help="Write the table to this file.")
-CLUSTER = click.option(
-    "--cluster",
-    metavar="local|ADDRESS",
-    help="Work in processes of this machine, or on the scheduler of Dask at this address, such as"
-    " tcp://10.0.0.5:8786. [default: threads of this process]",
-)
-WORKERS = click.option(
-    "--workers",
-    type=click.IntRange(1, 1024),
-    metavar="N",
-    help="How many threads or processes. [default: one for each core]",
-)
-PATIENCE = click.option(
-    "--patience",
-    "patience_s",
-    type=click.FloatRange(min=0.1),
-    default=PATIENCE_S,
-    show_default=True,
-    metavar="SECONDS",
-    help="How long one request to a store at a URL may take.",
-)
-
-
-def store_options(command: Command) -> Command:
-    """The data set, and where the work on it is done."""
-    for option in (PATIENCE, WORKERS, CLUSTER, FLEET):
-        command = option(command)
-    return command
-
-
-def selecting(command: Command) -> Command:
-    """Which missions are meant."""
-    for option in (BUILD, UNTIL, SINCE, ROBOTS):
-        command = option(command)
-    return command
-
-
-@contextmanager
-def engine_for(cluster: str | None, workers: int | None) -> Iterator[Engine]:
-    """See `engine`; the start of processes takes seconds."""
-    with engine(cluster, workers) as found:
-        yield found
-
-
-def tell_unread(unread: Sequence[Unread]) -> int:
-    """Name the missions that cannot be read; the exit status."""
-    for one in unread[:_SAID]:
-        warn(f"{'/'.join(one.place)} is left out: {one.why}")
-    if len(unread) > _SAID:
-        warn(f"{len(unread) - _SAID:,} more missions are left out")
-    return 1 if unread else 0
 
 
 @click.group("fleet")
@@ -148,7 +83,9 @@ class _AddArguments:
     metavar="NAME",
     help="The robot. [default: the first folder below PATH that has missions, else PATH's name]",
 )
-@click.option("--day", callback=_day, metavar="DAY", help="The day. [default: by their clocks]")
+@click.option(
+    "--day", callback=day_given, metavar="DAY", help="The day. [default: by their clocks]"
+)
 @click.option(
     "--static",
     "static_source",
@@ -180,7 +117,7 @@ def add_command(given: _AddArguments) -> None:
     fleet = Fleet(given.fleet, given.patience_s)
     found = missions_at(given.paths, given.robot)
     options = AddOptions(given.static_source, given.keep, given.verdict, given.day, given.again)
-    with engine_for(given.cluster, given.workers) as own, progress("adding missions") as advance:
+    with engine(given.cluster, given.workers) as own, progress("adding missions") as advance:
         made = add(fleet, found, options, own, advance)
     for one in made:
         for note in one.notes:
@@ -270,7 +207,7 @@ def list_command(given: _ListArguments) -> None:
     """List the missions."""
     selection = Selection(given.robots, given.since, given.until, given.verdict, given.build)
     fleet = Fleet(given.fleet, given.patience_s)
-    with engine_for(given.cluster, given.workers) as own, progress("reading missions") as advance:
+    with engine(given.cluster, given.workers) as own, progress("reading missions") as advance:
         found = missions(fleet, own, selection, advance)
     if given.parquet is not None:
         write_table(table_of(found.found), given.parquet)
@@ -324,7 +261,7 @@ class _ShowArguments:
 def show_command(given: _ShowArguments) -> None:
     """Show how large the data set is, or what is known of one MISSION."""
     fleet = Fleet(given.fleet, given.patience_s)
-    with engine_for(given.cluster, given.workers) as own, progress("reading missions") as advance:
+    with engine(given.cluster, given.workers) as own, progress("reading missions") as advance:
         found = missions(fleet, own, on_progress=advance)
     if given.mission is None:
         if given.output is not None:
@@ -422,7 +359,7 @@ def drop_command(given: _DropArguments) -> None:
     selection = Selection(given.robots, given.since, given.until, build=given.build)
     places = {meant(fleet, name) for name in given.names}
     if selection != Selection():
-        with engine_for(given.cluster, given.workers) as own:
+        with engine(given.cluster, given.workers) as own:
             found = missions(fleet, own, selection)
         places |= {one.place for one in found.found}
     if given.half:
@@ -440,5 +377,8 @@ def drop_command(given: _DropArguments) -> None:
     else:
         click.echo(f"{many(len(places), 'mission')} removed")
 
+
+for answer in ANSWERS:
+    fleet_command.add_command(answer)
 
 COMMANDS: list[click.Command] = [fleet_command]
