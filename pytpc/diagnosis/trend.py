@@ -8,7 +8,7 @@ for few points.
 from __future__ import annotations
 
 from functools import lru_cache
-from math import erfc, factorial, sqrt
+from math import ceil, erfc, factorial, floor, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +19,7 @@ CHANCE = 0.01
 """How likely a slope is to be seen where there is none."""
 
 _EXACT = 40
+_WIDTH = 1.96
 
 
 class Trend(NamedTuple):
@@ -40,13 +41,55 @@ def trend_of(times: Floats, values: Floats) -> Trend | None:
         times: float64[n], rising.
         values: float64[n], finite.
     """
-    first, second = np.triu_indices(times.size, 1)
-    if not first.size:
+    if times.size < 2:
         return None
-    steps = values[second] - values[first]
-    slope = float(np.median(steps / (times[second] - times[first])))
+    steps, slopes = _pairs_of(times, values)
     order = int(np.sign(steps).sum())
-    return Trend(slope, _chance(order, values))
+    return Trend(float(np.median(slopes)), _chance(order, values))
+
+
+class Line(NamedTuple):
+    """A line through a series: ``slope`` per unit of the times, and the value at time 0."""
+
+    slope: float
+    start: float
+
+    def at(self, time: float) -> float:
+        """The value at a time."""
+        return self.start + self.slope * time
+
+    @property
+    def zero(self) -> float | None:
+        """When it falls to 0; None if it does not fall."""
+        return -self.start / self.slope if self.slope < 0 else None
+
+
+def lines_of(times: Floats, values: Floats) -> tuple[Line, Line, Line]:
+    """The line with the slope of `trend_of`, and those with the ends of its 95 % interval.
+
+    The interval are two of the slopes of all pairs, by the normal distribution of Kendall's sum
+    (Sen 1968). Each line has the median distance to the points 0.
+
+    Args:
+        times: float64[n], rising, at least two.
+        values: float64[n], finite.
+    """
+    slopes = np.sort(_pairs_of(times, values)[1])
+    _, ties = np.unique(values, return_counts=True)
+    spread = _pairs(values.size) - sum(_pairs(int(tie)) for tie in ties)
+    off = _WIDTH * sqrt(max(0, spread) / 18.0)
+    low = max(0, floor((slopes.size - off) / 2.0) - 1)
+    high = min(slopes.size - 1, ceil((slopes.size + off) / 2.0))
+    chosen = (float(np.median(slopes)), float(slopes[low]), float(slopes[high]))
+    found = [Line(slope, float(np.median(values - slope * times))) for slope in chosen]
+    return found[0], found[1], found[2]
+
+
+def _pairs_of(times: Floats, values: Floats) -> tuple[Floats, Floats]:
+    """By how much the values of all pairs of points differ, and the slopes."""
+    first, second = np.triu_indices(times.size, 1)
+    steps = values[second] - values[first]
+    return steps, steps / (times[second] - times[first])
 
 
 def _chance(order: int, values: Floats) -> float:

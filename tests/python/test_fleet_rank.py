@@ -173,6 +173,16 @@ def test_diagnoses_of_two_robots_with_missions_of_one_name():
     assert (found.missions, found.position.tolist()) == (1, [3.0])
 
 
+def test_a_diagnosis_may_use_the_name_in_the_source():
+    rows = Rows.of(table([digest(Flight("m1", "r1", verdict="bad"), parameter="/r1/nav/p")]))
+    names = ("/nav/p", "/arm/gain", "/a/x", "/b/x")
+    given = [("m1", name, 0.3, 0.1) for name in ("~p", "/r1/arm/gain", "~x")]
+    found = joined(rows, names, diagnoses(*given)).evidence
+    # ~x may be either.
+    assert found[0] == found[1] != 0
+    assert found[2:].tolist() == [0.0, 0.0]
+
+
 # -1 / (e p log p): e * 0.05 * 2.9957 = 0.4072. For 0.001 it is -log(0.0188) = 3.98, above the most.
 def test_what_a_chance_is_worth():
     assert worth(0.05) == pytest.approx(-math.log(0.40717), abs=1e-4)

@@ -28,6 +28,7 @@ from pytpc.base.errors import InputError
 from pytpc.diagnosis.fleet.rank_sum import summed
 from pytpc.diagnosis.fleet.rows import Rows, each_pair, numbers_of, without_robot, words_of
 from pytpc.diagnosis.fleet.value_evidence import OTHER
+from pytpc.static.parameters import ByParameter
 
 NONE = 0.2
 """The probability, before any evidence, that no parameter is the cause: one treatment in five of
@@ -103,9 +104,17 @@ def _columns(rows: Rows, names: tuple[str, ...], table: pa.Table, mission: Int32
     words, word = words_of(table, "parameter")
     robot = rows.robot[np.maximum(mission, 0)]
     place = {name: column for column, name in enumerate(names)}
-    return each_pair(
-        robot, word, lambda r, w: place.get(without_robot(words[w], rows.robots[r]), -1)
-    )
+    by_name = ByParameter(range(len(names)), lambda column: names[column])
+
+    def column_of(r: int, w: int) -> int:
+        name = without_robot(words[w], rows.robots[r])
+        if name in place:
+            return place[name]
+        # A diagnosis calls what no comparison reports by the name in the source.
+        meant = by_name.meant(name)
+        return meant[0] if len(meant) == 1 else -1
+
+    return each_pair(robot, word, column_of)
 
 
 def _positions(table: pa.Table, rows: Int64s, column: Int32s, count: int) -> Floats:

@@ -82,33 +82,92 @@ def _normal(excess: Floats, variance: Floats, step: Floats) -> Floats:
     return chance
 
 
-def _cells(cell: Int64s, values: Floats, group: Bools) -> _Cells:
+def each_against_rest(
+    which: Int64s, member: Int64s, values: Floats, shape: tuple[int, int]
+) -> Floats:
+    """The chance of the values of each member against those of all others.
+
+    Args:
+        which: int64[r], the comparison of each row.
+        member: int64[r], whose row it is.
+        values: float64[r]; nan is left out.
+        shape: how many comparisons and members there are.
+
+    Returns:
+        float64[comparisons, members]: two-sided; nan where there is nothing to compare.
+    """
+    ranked = _ranked(which, values)
+    count, width = shape
+    own = which[ranked.order] * width + member[ranked.order]
+    size = np.bincount(own, minlength=count * width)
+    total = summed(own, ranked.rank, count * width)
+    every, tied = np.zeros(count, np.int64), np.zeros(count)
+    every[ranked.cell], tied[ranked.cell] = ranked.every, ranked.ties
+    every, tied = np.repeat(every, width), np.repeat(tied, width)
+    both = np.flatnonzero((size > 0) & (size < every))
+    size, every, tied = size[both], every[both], tied[both]
+    excess = total[both] - size * (every + 1) / 2.0
+    chance = _normal(excess, _variance(size, every, tied), np.ones(both.size))
+    for n in np.flatnonzero(tied == 0).tolist():
+        group, rest = int(size[n]), int(every[n] - size[n])
+        if group * rest <= _EXACT:
+            chance[n] = exact_chance(float(excess[n]), group, rest)
+    found = np.full(count * width, np.nan)
+    found[both] = chance
+    return found.reshape(shape)
+
+
+class _Ranked(NamedTuple):
+    """``order`` lists the known rows by cell and value, ``rank`` float64 is each one's in its cell.
+
+    Of each cell: its number, where it begins, how many rows it has, and the sum of t^3 - t over
+    runs of t equal values.
+    """
+
+    order: Int64s
+    rank: Floats
+    cell: Int64s
+    starts: Int64s
+    every: Int64s
+    ties: Floats
+
+
+def _ranked(cell: Int64s, values: Floats) -> _Ranked:
     known = np.flatnonzero(~np.isnan(values))
     order = known[np.lexsort((values[known], cell[known]))]
-    cell, values, group = cell[order], values[order], group[order]
-    new = np.ones(order.size, np.bool_)
-    new[1:] = cell[1:] != cell[:-1]
+    cell, values = cell[order], values[order]
+    if not order.size:
+        return _Ranked(order, np.empty(0), order, order, order, np.empty(0))
+    new = np.append(True, cell[1:] != cell[:-1])
     starts = np.flatnonzero(new)
-    if not starts.size:
-        nothing = np.empty(0)
-        none = np.empty(0, np.int64)
-        return _Cells(none, none, none, nothing, nothing, np.empty(0, np.bool_))
     every = np.diff(np.append(starts, order.size))
     place = np.arange(order.size) - np.repeat(starts, every) + 1
-    run = new.copy()
-    run[1:] |= values[1:] != values[:-1]
-    first = np.flatnonzero(run)
+    first = np.flatnonzero(new | np.append(True, values[1:] != values[:-1]))
     alike = np.diff(np.append(first, order.size))
     rank = np.repeat(place[first] + (alike - 1) / 2.0, alike)
     ties = np.add.reduceat(np.repeat(alike**2 - 1.0, alike), starts)
-    size = np.add.reduceat(group.astype(np.int64), starts)
-    total = np.add.reduceat(np.where(group, rank, 0.0), starts)
-    excess = total - size * (every + 1) / 2.0
-    both = (size > 0) & (size < every)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        variance = size * (every - size) / 12.0 * (every + 1.0 - ties / (every * (every - 1.0)))
-    at = starts[both]
-    return _Cells(cell[at], size[both], every[both], excess[both], variance[both], ties[both] > 0)
+    return _Ranked(order, rank, cell[starts], starts, every, ties)
+
+
+def _variance(size: Int64s, every: Int64s, ties: Floats) -> Floats:
+    """That of a rank sum, with ties."""
+    spread = every + 1.0 - ties / (every * (every - 1.0))
+    return np.asarray(size * (every - size) / 12.0 * spread)
+
+
+def _cells(cell: Int64s, values: Floats, group: Bools) -> _Cells:
+    ranked = _ranked(cell, values)
+    if not ranked.order.size:
+        none = np.empty(0, np.int64)
+        return _Cells(none, none, none, np.empty(0), np.empty(0), np.empty(0, np.bool_))
+    own = group[ranked.order]
+    size = np.add.reduceat(own.astype(np.int64), ranked.starts)
+    total = np.add.reduceat(np.where(own, ranked.rank, 0.0), ranked.starts)
+    both = (size > 0) & (size < ranked.every)
+    size, every, ties = size[both], ranked.every[both], ranked.ties[both]
+    excess = total[both] - size * (every + 1) / 2.0
+    variance = _variance(size, every, ties)
+    return _Cells(ranked.cell[both], size, every, excess, variance, ties > 0)
 
 
 def exact_chance(excess: float, group: int, rest: int) -> float:

@@ -39,7 +39,6 @@ from pytpc.diagnosis.ranking.posterior import softmax
 from pytpc.diagnosis.ranking.replayed_outcomes import UNKNOWN_CHARGE
 from pytpc.diagnosis.results.fleet import (
     FleetEvidence,
-    FleetPlace,
     FleetRanking,
     FleetSuspect,
 )
@@ -206,16 +205,10 @@ def _suspect(
         margin_bad=margins[0],
         margin_good=margins[1],
         unit=rows.series[shows].unit if shows >= 0 else "",
-        shows=place_of(rows, shows) if shows >= 0 else None,
+        shows=rows.series[shows].where if shows >= 0 else None,
         robots=held.robots,
         reason="; ".join((*held.reasons, *_behaviour(scored.differing, one, is_compared))),
     )
-
-
-def place_of(rows: Rows, series: int) -> FleetPlace:
-    """A comparison of the fleet, as answers name it."""
-    one = rows.series[series]
-    return FleetPlace(one.key, one.node, one.parameter, one.place)
 
 
 def _margins(rows: Rows, series: int) -> tuple[float | None, float | None]:

@@ -19,6 +19,7 @@ import pyarrow as pa
 
 from pytpc.base.columns import Bools, Floats, Int32s, Int64s, frozen, words_and_codes
 from pytpc.base.errors import InputError
+from pytpc.diagnosis.results.fleet import FleetPlace
 from pytpc.static.parameters import base_key
 
 BAD, GOOD = "bad", "good"
@@ -51,6 +52,16 @@ class Series(NamedTuple):
     relation: str
     kind: str
     unit: str
+
+    @property
+    def where(self) -> FleetPlace:
+        """What answers call it."""
+        return FleetPlace(self.parameter, self.node, self.place, self.key)
+
+    @property
+    def named(self) -> tuple[str, str, str]:
+        """By what a query names it: key, parameter, place."""
+        return self.key, self.parameter, self.place
 
 
 @dataclass(frozen=True, eq=False)

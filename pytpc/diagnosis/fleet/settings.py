@@ -40,6 +40,7 @@ class Settings:
         flags: bool[p], whether the numbers of each are true and false.
         numbers: float64[v], the different values, nan for what is no number.
         texts: what the values are called that are no numbers, by their code.
+        together: the codes of the values that a parameter had in one mission, by theirs.
         parameter: int32[e], sorted; ``mission`` int32[e], rising in each parameter.
         value: int32[e], codes of the values; those of numbers come first and rise with them.
     """
@@ -48,6 +49,7 @@ class Settings:
     flags: Bools
     numbers: Floats
     texts: dict[int, str]
+    together: dict[int, tuple[int, ...]]
     parameter: Int32s
     mission: Int32s
     value: Int32s
@@ -79,6 +81,9 @@ class Settings:
 
     def setting(self, parameter: int, value: int) -> Setting:
         """A value of a parameter, for people."""
+        if value in self.together:
+            every = [self.setting(parameter, one).text for one in self.together[value]]
+            return Setting(listed(every, _LISTED), None)
         if value in self.texts:
             return Setting(self.texts[value], None)
         number = float(tidy(float(self.numbers[value])))
@@ -205,21 +210,15 @@ def _settings(names: list[str], found: list[_Found], rows: Rows) -> Settings:
     value = code[starts].astype(np.int32)
     flags = np.zeros(len(names), np.bool_)
     flags[sorted(set().union(*(one.truths for one in found)))] = True
-    known = Settings(
-        tuple(names), flags, values[0], values[1], parameter[starts], mission[starts], value
-    )
     together: dict[tuple[int, ...], int] = {}
-    joined: dict[int, str] = {}
     for place, several in _several(starts, code, source[kept][order]):
-        own = together.setdefault(several, len(values[0]) + len(together))
-        at = int(parameter[starts[place]])
-        joined[own] = listed([known.setting(at, one).text for one in several], _LISTED)
-        value[place] = own
+        value[place] = together.setdefault(several, len(values[0]) + len(together))
     return Settings(
         tuple(names),
         frozen(flags),
         frozen(np.append(values[0], np.full(len(together), np.nan))),
-        values[1] | joined,
+        values[1],
+        {own: several for several, own in together.items()},
         frozen(parameter[starts]),
         frozen(mission[starts]),
         frozen(value),

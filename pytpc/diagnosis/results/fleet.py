@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from pytpc.base.wording import many, percent
 from pytpc.diagnosis.results.suspects import SURE
@@ -12,18 +12,17 @@ WHOLE_FLEET = ""
 """The robot of what is said of all robots together."""
 
 
-@dataclass(frozen=True, slots=True)
-class FleetPlace:
+class FleetPlace(NamedTuple):
     """A comparison of the fleet.
 
-    ``key`` is that of the newest build, ``node`` and ``parameter`` are without the robots' own
-    namespaces, ``place`` is ``file:line``.
+    ``node`` and ``parameter`` are without the robots' own namespaces, ``place`` is ``file:line``,
+    ``key`` that of the newest build.
     """
 
-    key: str
-    node: str
     parameter: str
+    node: str
     place: str
+    key: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,6 +151,7 @@ class FleetDrift:
         days: how many days there are missions of.
         now: the margin on the last day, on the line; ``per_day`` is its slope, in ``unit``.
         chance: how likely chance is to order days so.
+        is_clear: whether it is hardly by chance, however many series were tested.
         turns_on: the day on which the margin will be 0, ``YYYY-MM-DD``; None if it rises, or that
             is too far off to say.
         earliest, latest: the interval of that day; None is an open end.
@@ -169,6 +169,7 @@ class FleetDrift:
     per_day: float
     unit: str
     chance: float
+    is_clear: bool
     turns_on: str | None
     earliest: str | None
     latest: str | None
@@ -220,6 +221,7 @@ class OtherDecision:
     ``measure`` is what differs: ``own`` is its median over the robot's missions, ``usual`` that of
     the sisters' medians. ``score`` is how many of their median absolute deviations it is off;
     ``chance`` how likely chance ranks its missions so, times the number of tests.
+    ``is_set_otherwise`` says that the robot has another value of the parameter, too.
     """
 
     robot: str
@@ -230,6 +232,7 @@ class OtherDecision:
     sisters: int
     score: float
     chance: float
+    is_set_otherwise: bool
 
 
 @dataclass(frozen=True, slots=True)
