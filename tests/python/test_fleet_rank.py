@@ -324,28 +324,33 @@ def test_diagnoses_decide_where_values_do_not():
     assert found.notes == ("1 bad mission without a diagnosis",)
 
 
+def recorded(flights, name, of):
+    return [
+        {
+            "mission": one.mission,
+            "robot": one.robot,
+            "name": name,
+            "time_ns": None,
+            "value": str(of(n)),
+            "number": float(of(n)),
+        }
+        for n, one in enumerate(flights)
+    ]
+
+
 def test_a_gain_that_no_comparison_reports_may_be_the_cause():
     flights = [Flight(f"m{n}", day=1 + n, verdict="bad" if n < 4 else "good") for n in range(12)]
     rows = Rows.of(table([digest(one, number) for one in flights for number in (0, 1)]))
-    values = pa.Table.from_pylist(
-        [
-            {
-                "mission": one.mission,
-                "robot": "r1",
-                "name": name,
-                "time_ns": None,
-                "value": value,
-                "number": float(value),
-            }
-            for one in flights
-            for name, value in (("/gain", "2" if one.verdict == "bad" else "1"), ("/rate", "9"))
-        ]
-    )
-    found = rank_fleet(rows, values=values)
+    values = recorded(flights, "/gain", lambda n: 2 if n < 4 else 1)
+    values += recorded(flights, "/rate", lambda n: 9)
+    # The seed of each mission is its number: those of the bad ones are the lowest.
+    values += recorded(flights, "/seed", lambda n: n)
+    found = rank_fleet(rows, values=pa.Table.from_pylist(values))
     first = found.suspects[0]
     assert (first.parameter, first.shows, first.unit) == ("/gain", None, "")
     assert first.reason.endswith("; no comparison reports it")
-    # The log says nothing of it: it is not blamed. What never changed is no suspect.
+    # The log says nothing of it: it is not blamed. What never changed is no suspect, nor is what
+    # only names a mission.
     assert found.accused is None
     assert [one.parameter for one in found.suspects[1:]] == ["/nav/p0", "/nav/p1"]
 

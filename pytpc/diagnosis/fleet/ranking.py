@@ -50,6 +50,8 @@ _DIGITS = 9
 """Scores that differ by rounding only are tied."""
 _ORDERED = frozenset({"<", "<=", ">", ">="})
 _NAMED = 3
+_NAMES, _NAME_SHARE = 5, 0.9
+"""What has other values in more than this part of so many good missions names each of them."""
 _CLEAR = 0.05
 
 
@@ -101,7 +103,7 @@ def _scored(rows: Rows, settings: Settings, diagnoses: Diagnoses) -> _Scored:
     found = differing(rows)
     behaviour = np.append(found.evidence, np.zeros(every - compared))
     suspected = np.ones(every, np.bool_)
-    suspected[compared:] = [_varies(settings, one) for one in range(compared, every)]
+    suspected[compared:] = [_may_matter(rows, settings, one) for one in range(compared, every)]
     prior = np.full(every, math.log((1.0 - NONE) / NONE) - math.log(max(1, suspected.sum())))
     prior[compared:] += UNKNOWN_CHARGE
     scores = prior + diagnoses.evidence + VALUES * values + behaviour
@@ -113,9 +115,17 @@ def _scored(rows: Rows, settings: Settings, diagnoses: Diagnoses) -> _Scored:
     )
 
 
-def _varies(settings: Settings, parameter: int) -> bool:
-    values = settings.value[settings.entries(parameter)]
-    return bool(values.size) and bool(np.any(values != values[0]))
+def _may_matter(rows: Rows, settings: Settings, parameter: int) -> bool:
+    """Whether what no comparison reports has several values, and is no name of the mission.
+
+    A seed, a time or a folder is another one in each mission, and those of bad missions follow each
+    other like these do.
+    """
+    own = settings.entries(parameter)
+    values = settings.value[own]
+    good = values[rows.good[settings.mission[own]]]
+    is_name = good.size >= _NAMES and np.unique(good).size > _NAME_SHARE * good.size
+    return not is_name and np.unique(values).size > 1
 
 
 def _value_evidence(rows: Rows, settings: Settings) -> Floats:
