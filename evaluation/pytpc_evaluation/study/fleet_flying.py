@@ -26,6 +26,8 @@ from pytpc.recording.mission import (
     EVENTS_FILE,
     RUN_FILE,
     SUMMARIES_FILE,
+    Recording,
+    is_converted,
     read_marks_json,
     write_marks_json,
 )
@@ -197,6 +199,8 @@ def mission_folder(flight: FleetFlight, out: Path) -> Path:
 def publish(flight: FleetFlight, out: Path) -> Seen:
     """Put a flown mission where its user has it: the recording, and one observer's marks.
 
+    A mission that is there as it was flown is left as it is, so that nobody takes it for another.
+
     Raises:
         InputError: the flown mission is broken.
         TpcError: the mission cannot be written.
@@ -207,6 +211,9 @@ def publish(flight: FleetFlight, out: Path) -> Seen:
     observer = observer_of(flight, every)
     own = sorted((m.mark("confused") for m in every if m.observer == observer), key=Mark.order)
     recording = replace(recording, name=flight.name, marks=tuple(own))
+    seen = Seen(observer, len(own))
+    if _is_published(recording, flown, folder):
+        return seen
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for file in _SHARED:
@@ -214,7 +221,7 @@ def publish(flight: FleetFlight, out: Path) -> Seen:
     except OSError as error:
         raise TpcError(f"cannot be written: {error.strerror}", folder) from error
     write_marks_json(recording, folder, events, summaries)
-    return Seen(observer, len(own))
+    return seen
 
 
 def observer_of(flight: FleetFlight, marks: Sequence[UserMark]) -> str:
@@ -253,6 +260,22 @@ def row_of(
     }
 
 
+def _is_published(recording: Recording, flown: Path, folder: Path) -> bool:
+    if not is_converted(folder):
+        return False
+    same = all(_size(folder / file) == _size(flown / file) for file in _SHARED)
+    there, _, _ = read_marks_json(folder)
+    return same and (there.name, there.marks) == (recording.name, recording.marks)
+
+
+def _size(file: Path) -> tuple[int, int] | None:
+    """How a file is told from another one: its size and when it was written; None without one."""
+    if not file.is_file():
+        return None
+    found = file.stat()
+    return (found.st_size, found.st_mtime_ns)
+
+
 def _share(source: Path, target: Path) -> None:
     """Have ``target`` be the file ``source``, or a copy where the file system has no links."""
     if not source.is_file():
@@ -264,4 +287,4 @@ def _share(source: Path, target: Path) -> None:
     try:
         os.link(source, target)
     except OSError:
-        shutil.copyfile(source, target)
+        shutil.copy2(source, target)

@@ -8,16 +8,17 @@ Everything is drawn by SHA-256, so that it is the same everywhere and whatever w
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from hashlib import sha256
 from itertools import zip_longest
 from pathlib import Path
 
 from pytpc.recording.parameter_change import Change
+from pytpc.values.recording import read_parameters
 from pytpc_evaluation.demo.demo_examples import EXAMPLES, Example
 from pytpc_evaluation.study.changes import harmless_changes
 from pytpc_evaluation.study.plan import CLEAN, Flight, Setting, halves, values_on
-from pytpc_evaluation.treatment import Treatment
+from pytpc_evaluation.treatment import OVERLAY_FILE, Treatment
 
 ROBOTS = ("robot-1", "robot-2", "robot-3")
 OWN = 6
@@ -41,12 +42,14 @@ class FleetFlight(Flight):
 
     ``number`` is that of the mission among all of the system, and ``own`` are the settings of its
     robot, which ``changes`` come on top of. ``is_extra``: it is beyond the ten of its treatment.
+    ``file`` is what the robot's own file says.
     """
 
     robot: str = ROBOTS[0]
     number: int = 0
     own: tuple[Change, ...] = ()
     is_extra: bool = False
+    file: Mapping[str, object] = field(default_factory=dict, repr=False, compare=False)
 
     @property
     def name(self) -> str:
@@ -64,7 +67,7 @@ class FleetFlight(Flight):
 
         So neither a file's name nor the place of a value says which of them is wrong.
         """
-        return self.example.treatment(CLEAN).overlay
+        return self.example.folder / "treatments" / CLEAN / OVERLAY_FILE
 
     @property
     def people(self) -> int:
@@ -80,13 +83,13 @@ class FleetFlight(Flight):
         """All that is set beside the robot's file, the treatment's parameter among it.
 
         Raises:
-            InputError: the robot's file cannot be read, or has no such parameter.
+            InputError: the robot has no such parameter.
         """
         changes = [Setting(one.parameter, one.node, one.new) for one in (*self.own, *self.changes)]
         treatment = self.treatment
         if treatment.parameter is not None and treatment.new is not None:
             changes.append(Setting(treatment.parameter, treatment.node or "", treatment.new))
-        return values_on(self.example, changes)
+        return values_on(self.file, changes)
 
 
 def fleet_flights(example: Example, treatments: Collection[str] = ()) -> list[FleetFlight]:
@@ -105,8 +108,30 @@ def fleet_flights(example: Example, treatments: Collection[str] = ()) -> list[Fl
     """
     among = harmless_changes(example)
     own = {robot: robot_settings(example.name, robot, among) for robot in ROBOTS}
-    good = [_good(example, number, own, among) for number in range(1, GOOD + 1)]
     half = halves(example.name, example.all_treatments())
+    file = read_parameters(example.parameters)
+    clean = example.treatment(CLEAN)
+
+    def mission(number: int, robot: str, treatment: Treatment, *, is_extra: bool) -> FleetFlight:
+        name = f"{example.name}/{robot}/{number}"
+        return FleetFlight(
+            kind="mission",
+            example=example,
+            treatment=treatment,
+            seed=_seed(example, number),
+            half=None if treatment is clean else half[treatment.name, 1],
+            changes=mission_settings(name, treatment, own[robot], among),
+            robot=robot,
+            number=number,
+            own=own[robot],
+            is_extra=is_extra,
+            file=file,
+        )
+
+    good = [
+        mission(number, ROBOTS[(number - 1) % len(ROBOTS)], clean, is_extra=False)
+        for number in range(1, GOOD + 1)
+    ]
     bad: list[list[FleetFlight]] = []
     extra: list[list[FleetFlight]] = []
     # A treatment has the same numbers whatever else there is to fly.
@@ -120,22 +145,7 @@ def fleet_flights(example: Example, treatments: Collection[str] = ()) -> list[Fl
             # The robot that is alone later has one more of the first ten.
             by_turns = ROBOTS[(ROBOTS.index(alone) + turn) % len(ROBOTS)]
             robot = by_turns if turn < BAD else alone
-            number = first + turn + 1
-            name = f"{example.name}/{robot}/{number}"
-            flights.append(
-                FleetFlight(
-                    kind="mission",
-                    example=example,
-                    treatment=treatment,
-                    seed=_seed(example, number),
-                    half=half[treatment.name, 1],
-                    changes=mission_settings(name, treatment, own[robot], among),
-                    robot=robot,
-                    number=number,
-                    own=own[robot],
-                    is_extra=turn >= BAD,
-                )
-            )
+            flights.append(mission(first + turn + 1, robot, treatment, is_extra=turn >= BAD))
         bad.append(flights[:BAD])
         extra.append(flights[BAD:])
     parts = (good[:FIRST_GOOD], good[FIRST_GOOD : 2 * FIRST_GOOD], good[2 * FIRST_GOOD :])
@@ -232,28 +242,6 @@ def _part_of(name: str, change: Change) -> Change:
     if old.is_integer() and new.is_integer():
         value = float(round(value))
     return Change(change.parameter, change.node, old, new if value == old else value)
-
-
-def _good(
-    example: Example,
-    number: int,
-    own: Mapping[str, tuple[Change, ...]],
-    among: Mapping[Change, Collection[str]],
-) -> FleetFlight:
-    robot = ROBOTS[(number - 1) % len(ROBOTS)]
-    clean = example.treatment(CLEAN)
-    name = f"{example.name}/{robot}/{number}"
-    return FleetFlight(
-        kind="mission",
-        example=example,
-        treatment=clean,
-        seed=_seed(example, number),
-        half=None,
-        changes=mission_settings(name, clean, own[robot], among),
-        robot=robot,
-        number=number,
-        own=own[robot],
-    )
 
 
 def _seed(example: Example, number: int) -> int:

@@ -116,18 +116,23 @@ class Flight:
         """
         decoys = [one for one in self.changes if one.parameter != self.treatment.parameter]
         wanted = [Setting(one.parameter, one.node, one.new) for one in decoys]
-        return values_on(self.example, [*wanted, *self.suggested])
+        return values_on(read_parameters(self.example.parameters), [*wanted, *self.suggested])
 
 
-def values_on(example: Example, settings: Iterable[Setting]) -> dict[str, float | int | bool]:
+def values_on(
+    own: Mapping[str, object], settings: Iterable[Setting]
+) -> dict[str, float | int | bool]:
     """What is set on a robot, by full names: of one that is there twice, the later value.
 
     Numbers have the type that they have in the robot's own file.
 
+    Args:
+        own: what is in that file.
+        settings: what is set.
+
     Raises:
-        InputError: the robot's file cannot be read, or has no such parameter.
+        InputError: the robot has no such parameter.
     """
-    own = read_parameters(example.parameters)
     found = {full_name(own, one.parameter, one.node): one.value for one in settings}
     return {name: _like(own[name], value) for name, value in sorted(found.items())}
 
