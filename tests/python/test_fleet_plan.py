@@ -308,6 +308,7 @@ def flown(system="pump", goods=60, marked=10, robots=ROBOTS):
             "parameter": "~b" if wrong else None,
             "node": "/pump" if wrong else None,
             "state": "done",
+            "errors": int(wrong),
             "marks": marks,
         }
 
@@ -338,6 +339,13 @@ def test_nothing_is_asked_with_too_few_missions():
     # Four of ten bad missions are of one robot: too few for the question about one.
     assert {one.shape for one in questions(flown())} == {"mixed"}
     assert {one.shape for one in questions(flown(robots=("robot-1",)))} == {"mixed", "one-robot"}
+    # A clean mission that went wrong is not a good one.
+    good = flown(goods=50)
+    assert list(questions(good))
+    assert not list(questions([{**good[0], "errors": 1}, *good[1:]]))
+    # Marks of a bad mission in which nothing was to be seen are false alarms.
+    unseen = [{**row, "errors": 0} for row in flown()]
+    assert not list(questions(unseen))
     planned = [{**row, "state": "planned"} for row in flown()]
     assert not list(questions(planned))
 

@@ -1,7 +1,8 @@
 """What is asked of flown fleets: ten bad missions and fifty good ones, and which parameter it is.
 
-Whether a mission went right is what its owner says: those with a wrong parameter went wrong if
-their observer marked them, and clean ones went right, whatever false alarms there were.
+Whether a mission went right is what its owner says: one with a wrong parameter went wrong if an
+error was seen and marked, and a clean one went right if none was seen, whatever false alarms there
+were. All others are left out.
 """
 
 from __future__ import annotations
@@ -60,8 +61,9 @@ def questions(
         if row["state"] != "done":
             continue
         if row["parameter"] is None:
-            good[row["system"]].append(row)
-        elif row["marks"]:
+            if not row["errors"]:
+                good[row["system"]].append(row)
+        elif row["errors"] and row["marks"]:
             bad[row["system"], row["treatment"]].append(row)
     for (system, treatment), marked in sorted(bad.items()):
         if len(good[system]) < GOOD:
