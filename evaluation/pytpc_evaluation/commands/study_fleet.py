@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -11,15 +12,33 @@ import click
 from rich.table import Table
 from rich.text import Text
 
-from pytpc.base.errors import RunError
+from pytpc.base.errors import InputError, RunError
 from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import JSON, PATH
-from pytpc.cli.console import console, print_json
+from pytpc.cli.console import console, print_json, progress
+from pytpc.cli.lines import say
+from pytpc_evaluation.commands.study_options import CHOSEN, RANK_AGAIN, RANK_JOBS, half_option
 from pytpc_evaluation.commands.study_progress import StudyProgress
 from pytpc_evaluation.demo.demo_examples import EXAMPLES
-from pytpc_evaluation.study.fleet_flying import FLIGHTS_FILE, opened_fleets, row_of, rows_of_all
+from pytpc_evaluation.study.fleet_flying import (
+    FLIGHTS_FILE,
+    load_rows,
+    opened_fleets,
+    row_of,
+    rows_of_all,
+)
+from pytpc_evaluation.study.fleet_judge import (
+    RESULTS_FILE,
+    alone_in_questions,
+    judge_alone,
+    judge_fleets,
+)
 from pytpc_evaluation.study.fleet_plan import all_fleet_flights
+from pytpc_evaluation.study.fleet_questions import DRAWS, SHAPES, Shape, questions
 from pytpc_evaluation.study.plan import FlightSelection, check_treatments
+from pytpc_evaluation.study.report.fleets import fleet_tables
+from pytpc_evaluation.study.resume import alone_with_results
+from pytpc_evaluation.tables import as_markdown
 
 _OUT = click.option(
     "--out",
@@ -120,6 +139,71 @@ def fly_command(
 def show_command(*, out: Path, as_json: bool) -> None:
     """Show how far the flights are: by system and treatment, how many are flown and were marked."""
     _show(list(rows_of_all(out).values()), out, as_json=as_json)
+
+
+@fleet_group.command("judge")
+@_OUT
+@half_option("both", "Ask about treatments of this half.")
+@click.option(
+    "--shape",
+    "shapes",
+    type=click.Choice(list(SHAPES)),
+    multiple=True,
+    help="Ask only these: bad missions of all robots, or of one; may be repeated.",
+)
+@click.option(
+    "--draws",
+    type=click.IntRange(1, 100),
+    default=DRAWS,
+    show_default=True,
+    help="How many questions, with other missions, about each treatment.",
+)
+@click.option("--alone/--no-alone", default=True, help="Also rank each bad mission by itself.")
+@RANK_AGAIN
+@RANK_JOBS
+@JSON
+def judge_command(
+    *,
+    out: Path,
+    half: str,
+    shapes: tuple[Shape, ...],
+    draws: int,
+    alone: bool,
+    again: bool,
+    jobs: int,
+    as_json: bool,
+) -> None:
+    """Ask the fleet's ranking about the flown missions, and show how often it is right.
+
+    Each question has ten bad missions of one treatment, each marked by one observer, and fifty good
+    ones. What was ranked is kept, and ranked again only if it or the ranking has changed.
+    """
+    # Dask takes a second to import, which other commands need not wait for.
+    from pytpc.api.dask_engine import engine  # noqa: PLC0415
+    from pytpc_evaluation.study.fleet_product import FleetRanker, add_flown  # noqa: PLC0415
+
+    rows = load_rows(out)
+    asked = [one for one in questions(rows, draws, shapes or SHAPES) if one.half in CHOSEN[half]]
+    if not asked:
+        raise InputError("too few missions are flown; fly on with `pytpc study fleet fly`", out)
+    with alone_with_results(out), engine(None, jobs) as workers:
+        with progress("adding missions") as advance:
+            places = add_flown(out, rows, workers, advance)
+        with progress("ranking fleets") as advance:
+            ranker = FleetRanker(places, workers)
+            verdicts = judge_fleets(out, asked, ranker, advance, again=again)
+        if alone:
+            with progress("ranking single missions") as advance:
+                single = judge_alone(out, asked, advance, jobs=jobs)
+            verdicts += alone_in_questions(asked, single)
+    if as_json:
+        print_json([asdict(one) for one in verdicts])
+        return
+    for table in fleet_tables(verdicts):
+        click.echo(as_markdown(table))
+        for note in table.notes:
+            click.echo(note)
+    say(f"{many(len(asked), 'question')}: {out / RESULTS_FILE}")
 
 
 def _show(rows: Sequence[dict[str, Any]], out: Path, *, as_json: bool) -> None:
