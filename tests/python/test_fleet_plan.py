@@ -333,6 +333,13 @@ def test_a_question_has_ten_bad_and_fifty_good_missions_of_all_robots():
     assert asked == list(questions(flown()[::-1], draws=2, shapes=["mixed"]))
 
 
+def test_a_question_may_have_other_numbers_of_missions():
+    (one,) = questions(flown(goods=9, marked=4), 1, ["mixed"], 4, 9)
+    assert (len(one.bad), len(one.good)) == (4, 9)
+    robots = Counter(folder.split("/")[2] for folder in one.bad)
+    assert sorted(robots.values()) == [1, 1, 2]
+
+
 def test_nothing_is_asked_with_too_few_missions():
     assert not list(questions(flown(goods=49)))
     assert not list(questions(flown(marked=7)))
@@ -402,6 +409,10 @@ def test_a_question_is_asked_again_only_if_a_mission_has_changed(tmp_path):
     # The verdicts on the other question were kept, though it was not asked.
     assert len(judge_fleets(tmp_path, [QUESTION, other], ranks)) == 4
     assert [one.draw for one in asked] == [0, 1, 0, 1]
+    # One with fewer missions is another question.
+    judge_fleets(tmp_path, [replace(QUESTION, bad=("m/1",))], ranks)
+    judge_fleets(tmp_path, [QUESTION], ranks)
+    assert [len(one.bad) for one in asked] == [2, 2, 2, 2, 1]
 
 
 def verdict(treatment, draw, first, method="fleet", **other):

@@ -34,7 +34,7 @@ from pytpc_evaluation.study.fleet_judge import (
     judge_fleets,
 )
 from pytpc_evaluation.study.fleet_plan import all_fleet_flights
-from pytpc_evaluation.study.fleet_questions import DRAWS, SHAPES, Shape, questions
+from pytpc_evaluation.study.fleet_questions import BAD, DRAWS, GOOD, SHAPES, Shape, questions
 from pytpc_evaluation.study.plan import FlightSelection, check_treatments
 from pytpc_evaluation.study.report.fleets import fleet_tables
 from pytpc_evaluation.study.resume import alone_with_results
@@ -158,6 +158,20 @@ def show_command(*, out: Path, as_json: bool) -> None:
     show_default=True,
     help="How many questions, with other missions, about each treatment.",
 )
+@click.option(
+    "--bad",
+    type=click.IntRange(1, 16),
+    default=BAD,
+    show_default=True,
+    help="How many bad missions a question has; a treatment with less than 80 % is left out.",
+)
+@click.option(
+    "--good",
+    type=click.IntRange(1, 60),
+    default=GOOD,
+    show_default=True,
+    help="How many good missions a question has.",
+)
 @click.option("--alone/--no-alone", default=True, help="Also rank each bad mission by itself.")
 @RANK_AGAIN
 @RANK_JOBS
@@ -168,6 +182,8 @@ def judge_command(
     half: str,
     shapes: tuple[Shape, ...],
     draws: int,
+    bad: int,
+    good: int,
     alone: bool,
     again: bool,
     jobs: int,
@@ -175,15 +191,16 @@ def judge_command(
 ) -> None:
     """Ask the fleet's ranking about the flown missions, and show how often it is right.
 
-    Each question has ten bad missions of one treatment, each marked by one observer, and fifty good
-    ones. What was ranked is kept, and ranked again only if it or the ranking has changed.
+    Each question has bad missions of one treatment, each marked by one observer, and good ones.
+    What was ranked is kept, and ranked again only if a mission or the ranking has changed.
     """
     # Dask takes a second to import, which other commands need not wait for.
     from pytpc.api.dask_engine import engine  # noqa: PLC0415
     from pytpc_evaluation.study.fleet_product import FleetRanker, add_flown  # noqa: PLC0415
 
     rows = load_rows(out)
-    asked = [one for one in questions(rows, draws, shapes or SHAPES) if one.half in CHOSEN[half]]
+    every = questions(rows, draws, shapes or SHAPES, bad, good)
+    asked = [one for one in every if one.half in CHOSEN[half]]
     if not asked:
         raise InputError("too few missions are flown; fly on with `pytpc study fleet fly`", out)
     with alone_with_results(out), engine(None, jobs) as workers:

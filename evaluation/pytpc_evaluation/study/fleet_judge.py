@@ -343,7 +343,9 @@ def _of(question: FleetQuestion) -> tuple[str, str, str, str, str, int]:
 
 
 def _place(one: FleetQuestion | FleetVerdict) -> tuple[str, ...]:
-    return (one.system, one.treatment, one.shape, str(one.draw))
+    counts = (one.bad, one.good)
+    bad, good = (count if isinstance(count, int) else len(count) for count in counts)
+    return (one.system, one.treatment, one.shape, str(one.draw), str(bad), str(good))
 
 
 def _rows(path: Path, schema: pa.Schema) -> list[dict[str, Any]]:

@@ -18,8 +18,8 @@ SHAPES: tuple[Shape, ...] = get_args(Shape)
 """Bad missions of all three robots, or of one; the good ones are of all three."""
 BAD = 10
 GOOD = 50
-FEWEST_BAD = 8
-"""Of a treatment with fewer marked missions nothing is asked."""
+_MARKED = 0.8
+"""Nothing is asked of a treatment with a smaller share of the wanted bad missions."""
 DRAWS = 3
 
 
@@ -47,6 +47,8 @@ def questions(
     rows: Iterable[Mapping[str, Any]],
     draws: int = DRAWS,
     shapes: Sequence[Shape] = SHAPES,
+    bad_count: int = BAD,
+    good_count: int = GOOD,
 ) -> Iterator[FleetQuestion]:
     """The questions that flown missions allow, by system, treatment and shape.
 
@@ -54,6 +56,8 @@ def questions(
         rows: of ``flights.json``.
         draws: how many questions there are of each treatment and shape, each with other missions.
         shapes: which.
+        bad_count: how many bad missions a question has; with less than 80 % of them there is none.
+        good_count: how many good ones; with fewer there is none.
     """
     good: defaultdict[str, list[Mapping[str, Any]]] = defaultdict(list)
     bad: defaultdict[tuple[str, str], list[Mapping[str, Any]]] = defaultdict(list)
@@ -66,11 +70,11 @@ def questions(
         elif row["errors"] and row["marks"]:
             bad[row["system"], row["treatment"]].append(row)
     for (system, treatment), marked in sorted(bad.items()):
-        if len(good[system]) < GOOD:
+        if len(good[system]) < good_count:
             continue
         for shape in shapes:
             among = marked if shape == "mixed" else _of_one_robot(marked)
-            if len(among) < FEWEST_BAD:
+            if len(among) < _MARKED * bad_count:
                 continue
             for draw in range(draws):
                 dice = random.Random(f"fleet {system} {treatment} {shape} {draw}")
@@ -83,8 +87,8 @@ def questions(
                     node=marked[0]["node"] or "",
                     shape=shape,
                     draw=draw,
-                    bad=by_turns(among, BAD, dice),
-                    good=by_turns(good[system], GOOD, dice),
+                    bad=by_turns(among, bad_count, dice),
+                    good=by_turns(good[system], good_count, dice),
                 )
 
 
