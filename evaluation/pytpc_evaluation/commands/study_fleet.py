@@ -217,9 +217,7 @@ def judge_command(
         print_json([asdict(one) for one in verdicts])
         return
     for table in fleet_tables(verdicts):
-        click.echo(as_markdown(table))
-        for note in table.notes:
-            click.echo(note)
+        click.echo(f"**{table.title}:**\n\n{as_markdown(table)}")
     say(f"{many(len(asked), 'question')}: {out / RESULTS_FILE}")
 
 
