@@ -35,6 +35,7 @@ from pytpc_evaluation.study.fleet_judge import (
     alone_in_questions,
     judge_fleets,
     judged,
+    load_verdicts,
 )
 from pytpc_evaluation.study.fleet_plan import (
     ROBOTS,
@@ -397,7 +398,9 @@ def test_a_question_is_asked_again_only_if_a_mission_has_changed(tmp_path):
         asked.append(question)
         return {"fleet": Verdict(("/pump/b",)), "fleet-differs": Verdict(())}
 
+    assert load_verdicts(tmp_path) == []
     first = judge_fleets(tmp_path, [QUESTION], ranks)
+    assert load_verdicts(tmp_path) == first
     assert [(one.method, one.first) for one in first] == [("fleet", 1.0), ("fleet-differs", 0.0)]
     assert judge_fleets(tmp_path, [QUESTION], ranks) == first
     assert len(asked) == 1

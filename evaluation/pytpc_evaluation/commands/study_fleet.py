@@ -204,8 +204,10 @@ def judge_command(
     if not asked:
         raise InputError("too few missions are flown; fly on with `pytpc study fleet fly`", out)
     with alone_with_results(out), engine(None, jobs) as workers:
+        wanted = {folder for one in asked for folder in (*one.bad, *one.good)}
         with progress("adding missions") as advance:
-            places = add_flown(out, rows, workers, advance)
+            own = [row for row in rows if row["folder"] in wanted]
+            places = add_flown(out, own, workers, advance)
         with progress("ranking fleets") as advance:
             ranker = FleetRanker(places, workers)
             verdicts = judge_fleets(out, asked, ranker, advance, again=again)

@@ -139,9 +139,8 @@ def judge_fleets(
         TpcError: a mission or the table cannot be read or written, or cannot be ranked.
     """
     path = out / RESULTS_FILE
-    known = [FleetVerdict(**row) for row in _rows(path, _VERDICTS)]
     by_question: dict[tuple[str, ...], list[FleetVerdict]] = {}
-    for one in known:
+    for one in load_verdicts(out):
         by_question.setdefault(_place(one), []).append(one)
     code, digests = method_digest(rank_of), _Digests(out)
     found: list[FleetVerdict] = []
@@ -160,6 +159,15 @@ def judge_fleets(
         every = [asdict(one) for rows in by_question.values() for one in rows]
         _save(every, _VERDICTS, path)
     return found
+
+
+def load_verdicts(out: Path) -> list[FleetVerdict]:
+    """The verdicts that were saved; none where there is no table.
+
+    Raises:
+        InputError: the table cannot be read.
+    """
+    return [FleetVerdict(**row) for row in _rows(out / RESULTS_FILE, _VERDICTS)]
 
 
 def judged(
