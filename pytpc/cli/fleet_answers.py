@@ -24,7 +24,6 @@ from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import JSON, PATH, as_object
 from pytpc.cli.console import console, print_json, progress, tell_person
 from pytpc.cli.fleet_options import PARQUET, selecting, store_options, tell_unread
-from pytpc.diagnosis.fleet.finding import TurnQuery
 from pytpc.fleet.store import Fleet
 from pytpc.present.fleet_columns import drifts_table, found_table, outliers_table, ranking_table
 from pytpc.present.fleet_json import drifts_json, found_json, outliers_json, ranking_json
@@ -209,7 +208,7 @@ def find_command(given: _FindArguments) -> None:
     FOUND.show(found.found, given, found.unread)
 
 
-def _query(given: _FindArguments) -> TurnQuery:
+def _query(given: _FindArguments) -> asking.TurnQuery:
     named: dict[str, str] = {}
     if _KEY.fullmatch(given.where):
         named["key"] = given.where
@@ -217,7 +216,7 @@ def _query(given: _FindArguments) -> TurnQuery:
         named["place"] = given.where
     else:
         named["parameter"] = given.where
-    return TurnQuery(**named, within=given.margin, low=given.low, high=given.high, had=given.had)
+    return asking.TurnQuery(**named, within=given.margin, low=given.low, high=given.high, had=given.had)
 
 
 @dataclass(frozen=True)
