@@ -216,7 +216,9 @@ def _query(given: _FindArguments) -> asking.TurnQuery:
         named["place"] = given.where
     else:
         named["parameter"] = given.where
-    return asking.TurnQuery(**named, within=given.margin, low=given.low, high=given.high, had=given.had)
+    return asking.TurnQuery(
+        **named, within=given.margin, low=given.low, high=given.high, had=given.had
+    )
 
 
 @dataclass(frozen=True)
