@@ -21,12 +21,12 @@ from pytpc_evaluation.fleet.generating import generate
 from pytpc_evaluation.fleet.world import WorldSettings
 
 pytestmark = pytest.mark.filterwarnings("ignore")
-WORLD = WorldSettings(robots=4, missions=48, days=6, reports=60_000)
+WORLD = WorldSettings(robots=4, missions=32, days=5, reports=60_000)
 
 
 @pytest.fixture(scope="module")
 def world(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, dict[str, Any]]:
-    """A data set of 48 missions of four robots, one of an older build; and the truth."""
+    """A data set of 32 missions of four robots, one of an older build; and the truth."""
     out = tmp_path_factory.mktemp("world")
     truth = generate(WORLD, out / "recorded")
     call("add", out / "fleet", out / "recorded")

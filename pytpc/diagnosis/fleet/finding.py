@@ -13,7 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from pytpc.base.columns import Bools, Int64s
+from pytpc.base.closest import did_you_mean
 from pytpc.base.errors import InputError
+from pytpc.base.wording import plain
 from pytpc.diagnosis.fleet.rows import Rows, without_robot
 from pytpc.diagnosis.results.fleet import FoundMission, FoundTurn
 from pytpc.diagnosis.scores.score_tables import Tpcs
@@ -71,7 +73,10 @@ def find_missions(rows: Rows, query: TurnQuery) -> tuple[FoundMission, ...]:
     """
     named = np.array([query.names(*one.named) for one in rows.series] or [False], np.bool_)
     if not named.any():
-        raise InputError("no comparison of the fleet has this place, parameter or key")
+        asked = query.parameter or query.place or query.key
+        known = {one.parameter if query.parameter else one.place for one in rows.series}
+        hint = did_you_mean(asked, sorted(known))
+        raise InputError(f"no comparison of the fleet is of {plain(asked)}{hint}")
     fits = np.flatnonzero(named[rows.which] & _fits(rows, query))
     fits = fits[np.lexsort((rows.which[fits], rows.mission[fits]))]
     mission = rows.mission[fits]
