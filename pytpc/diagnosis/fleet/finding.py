@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pytpc.base.columns import Bools, Int64s
 from pytpc.base.closest import did_you_mean
+from pytpc.base.columns import Bools, Int64s
 from pytpc.base.errors import InputError
 from pytpc.base.wording import plain
 from pytpc.diagnosis.fleet.rows import Rows, without_robot
@@ -124,7 +124,8 @@ def turns_in(
     """The turns of one mission that a query asks for, by time.
 
     The margin of a turn is the smaller one of the evaluations before and after it: the value was as
-    near to the threshold as that. Turns that only a summary counts have no time, and are not found.
+    near to the threshold as that. Where only turns were kept, it is that of the one after it. Turns
+    that only a summary counts have no time, and are not found.
 
     Args:
         recording: the mission.
@@ -158,7 +159,8 @@ def _turns(recording: Recording, named: tuple[str, str, str], scale: float) -> I
     before = events.previous[rows]
     with np.errstate(invalid="ignore"):
         margins = [np.abs(events.cmp[at] - events.thresh[at]) / scale for at in (before, rows)]
-    margin = np.fmin(*margins)
+    # Where summaries have the evaluations between, the row before is that of an earlier turn.
+    margin = margins[1] if recording.summaries.rows_of(key).size else np.fmin(*margins)
     for row, off in zip(rows.tolist(), margin.tolist(), strict=True):
         yield FoundTurn(
             time_ns=int(events.time_ns[row]),
