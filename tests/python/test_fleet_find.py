@@ -62,7 +62,7 @@ def test_a_mission_says_which_comparisons_fit():
     [TurnQuery(place="av.cpp:10"), TurnQuery(place="nav.cpp:1"), TurnQuery(parameter="speed")],
 )
 def test_a_place_that_is_nowhere_is_an_error(query):
-    with pytest.raises(InputError, match="no comparison of the fleet has this"):
+    with pytest.raises(InputError, match="no comparison of the fleet is of"):
         found(query, *rows())
 
 
