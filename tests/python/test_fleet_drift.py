@@ -95,8 +95,8 @@ def test_the_least_margin_of_what_turns_already_does_not_count():
     assert (one.measure, one.turned, one.turns_on) == ("median", 15, "2026-03-11")
 
 
-# Two robots, which fly by turns, and fall by 1 a day: from 22 to 12 on March 11, and from 111 to 101
-# on March 12. In the middle of both 56 on March 12.
+# Two robots, which fly by turns and fall by 1 a day: from 22 to 12 on March 11, and from 111 to 101
+# on March 12. In the middle of both: 56 on March 12.
 def test_over_the_fleet_only_days_of_one_robot_are_compared():
     rows = []
     for day in range(12):
