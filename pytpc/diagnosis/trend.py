@@ -7,6 +7,7 @@ for few points.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from math import ceil, erfc, factorial, floor, sqrt
 from typing import NamedTuple
@@ -64,24 +65,43 @@ class Line(NamedTuple):
         return -self.start / self.slope if self.slope < 0 else None
 
 
-def lines_of(times: Floats, values: Floats) -> tuple[Line, Line, Line]:
-    """The line with the slope of `trend_of`, and those with the ends of its 95 % interval.
+def joint_trend(series: Sequence[tuple[Floats, Floats]]) -> Trend | None:
+    """The trend that several series share; None if each has fewer than two points.
 
-    The interval are two of the slopes of all pairs, by the normal distribution of Kendall's sum
-    (Sen 1968). Each line has the median distance to the points 0.
+    Only points of one series are compared, so that their levels and times do not matter: Kendall's
+    sums are added up, and so are their variances (van Belle and Hughes 1984).
 
     Args:
-        times: float64[n], rising, at least two.
-        values: float64[n], finite.
+        series: times, rising, and finite values, of each.
     """
-    slopes = np.sort(_pairs_of(times, values)[1])
-    _, ties = np.unique(values, return_counts=True)
-    spread = _pairs(values.size) - sum(_pairs(int(tie)) for tie in ties)
-    off = _WIDTH * sqrt(max(0, spread) / 18.0)
+    if len(series) == 1:
+        return trend_of(*series[0])
+    both = [_pairs_of(*one) for one in series]
+    slopes = np.concatenate([slopes for _, slopes in both]) if both else np.empty(0)
+    if not slopes.size:
+        return None
+    order = sum(int(np.sign(steps).sum()) for steps, _ in both)
+    return Trend(float(np.median(slopes)), _by_normal(order, _spread(series)))
+
+
+def lines_of(series: Sequence[tuple[Floats, Floats]]) -> tuple[Line, Line, Line]:
+    """The line with the slope of `joint_trend`, and those with the ends of its 95 % interval.
+
+    The interval are two of the slopes of all pairs, by the normal distribution of Kendall's sum
+    (Sen 1968). Each line has the median distance 0 to the points of the median series.
+
+    Args:
+        series: as for `joint_trend`; one has at least two points.
+    """
+    slopes = np.sort(np.concatenate([_pairs_of(*one)[1] for one in series]))
+    off = _WIDTH * sqrt(max(0, _spread(series)) / 18.0)
     low = max(0, floor((slopes.size - off) / 2.0) - 1)
     high = min(slopes.size - 1, ceil((slopes.size + off) / 2.0))
     chosen = (float(np.median(slopes)), float(slopes[low]), float(slopes[high]))
-    found = [Line(slope, float(np.median(values - slope * times))) for slope in chosen]
+    found = []
+    for slope in chosen:
+        levels = [float(np.median(values - slope * times)) for times, values in series]
+        found.append(Line(slope, float(np.median(levels))))
     return found[0], found[1], found[2]
 
 
@@ -102,7 +122,19 @@ def _chance(order: int, values: Floats) -> float:
         # The sum of signs of k pairs in the wrong order is `pairs` - 2 k.
         beyond = sum(ways[: (pairs - abs(order)) // 2 + 1])
         return min(1.0, 2.0 * beyond / factorial(count))
-    spread = _pairs(count) - sum(_pairs(int(tie)) for tie in ties)
+    return _by_normal(order, _spread([(values, values)]))
+
+
+def _spread(series: Sequence[tuple[Floats, Floats]]) -> int:
+    """18 times the variance of the sum of signs."""
+    spread = 0
+    for _, values in series:
+        _, ties = np.unique(values, return_counts=True)
+        spread += _pairs(values.size) - sum(_pairs(int(tie)) for tie in ties)
+    return spread
+
+
+def _by_normal(order: int, spread: int) -> float:
     if spread <= 0:
         return 1.0
     return erfc(max(0, abs(order) - 1) / sqrt(spread / 18.0) / sqrt(2.0))

@@ -95,21 +95,29 @@ def test_the_least_margin_of_what_turns_already_does_not_count():
     assert (one.measure, one.turned, one.turns_on) == ("median", 15, "2026-03-11")
 
 
-# Two robots at 10 and at 100, which fly by turns. Each falls by 1 a day; the fleet's level, 55 in
-# the mean of their medians, falls by 1 as well, whoever flies.
-def test_over_the_fleet_the_level_of_each_robot_is_taken_out():
+# Two robots, which fly by turns and fall by 1 a day: from 22 to 12 on March 11, and from 111 to 101
+# on March 12. In the middle of both: 56 on March 12.
+def test_over_the_fleet_only_days_of_one_robot_are_compared():
     rows = []
     for day in range(12):
         robot = "ab"[day % 2]
         level = 10.0 if robot == "a" else 100.0
         rows += daily([level + 12.0 - day], robot=robot, first=1 + day)
     found = [one for one in drifts(*rows).drifts if one.robot == WHOLE_FLEET]
-    assert [one.days for one in found] == [12]
-    assert found[0].per_day == pytest.approx(-1.0, abs=0.01)
+    assert [(one.days, one.per_day) for one in found] == [(12, -1.0)]
+    assert found[0].now == pytest.approx(56.0)
     assert found[0].is_clear
 
 
-# 1,000 series without a trend: a drift that chance brings once in fifty is not clear.
+# A robot flew in the first week at 10, its sister in the second at 5: nothing fell.
+def test_another_level_of_another_robot_is_no_drift():
+    rng = np.random.default_rng(5)
+    rows = daily((10 + rng.random(7)).tolist(), robot="a")
+    rows += daily((5 + rng.random(7)).tolist(), robot="b", first=8)
+    assert [one for one in drifts(*rows).drifts if one.robot == WHOLE_FLEET] == []
+
+
+# 200 series without a trend: a drift that chance brings once in fifty is not clear.
 def test_among_many_series_a_weak_trend_is_not_clear():
     rng = np.random.default_rng(7)
     rows = []
@@ -135,10 +143,10 @@ def test_nothing_drifts_in_an_empty_fleet():
 # Slopes of the pairs of 0, 1, 2, 3, 10: 1 six times, 10/4, 9/3, 8/2, 7. For five points 1.96 *
 # sqrt(5 * 4 * 15 / 18) = 8.0: from the first of ten to the last. The middle one of ten is 1.
 def test_the_interval_of_a_slope():
-    line, low, high = lines_of(np.arange(5.0), np.array([0.0, 1.0, 2.0, 3.0, 10.0]))
+    line, low, high = lines_of([(np.arange(5.0), np.array([0.0, 1.0, 2.0, 3.0, 10.0]))])
     assert (line.slope, low.slope, high.slope) == (1.0, 1.0, 7.0)
     assert (line.at(4.0), line.zero) == (4.0, None)
-    falling, steep, flat = lines_of(np.arange(5.0), np.array([10.0, 9.0, 8.0, 7.0, 0.0]))
+    falling, steep, flat = lines_of([(np.arange(5.0), np.array([10.0, 9.0, 8.0, 7.0, 0.0]))])
     assert (falling.zero, steep.slope, flat.slope) == (10.0, -7.0, -1.0)
 
 

@@ -28,17 +28,17 @@ def by_values(*missions, ordered=True, robots=None):
     return value_evidence(found, known, codes, ordered=ordered, several=several)
 
 
-# P(bad) is (1 + 4 * (1 + 0.5) / (2 + 1)) / (2 + 4) = 0.5. Of the three sets {1}, {2} and {1, 2} one
-# has the bad mission and leaves out the good one. In it: B(10, 1) / B(9, 1) = 0.9, by 0.5. The good
-# one: (1 - 0.5 (1 - x)) / 0.5 = 1 + x, in the mean 1.8. Cuts: 1.8 * 1.8 / 3 = 1.08. Each by itself:
-# 0.2 * 1.8 * 0.8 * 1.8 = 0.5184, with exp(-3) = 0.0498 of it.
+# P(bad) is (1 + 4 * (1 + 0.5) / (2 + 1)) / (2 + 4) = 0.5. Of the sets {1}, {2}, {1, 2} one has the
+# bad mission and leaves out the good one. In it: B(10, 1) / B(9, 1) = 0.9, by 0.5. The good one:
+# (1 - 0.5 (1 - x)) / 0.5 = 1 + x, in the mean 5 / 3. Cuts: 1.8 * 5 / 3 / 3 = 1. Each by itself:
+# 0.2 * 1.8 * 0.8 * 5 / 3 = 0.48, with exp(-3) = 0.0498 of it: 0.974 in all.
 def test_one_bad_and_one_good_mission():
     mean = 1.0 + float(EXPLAINED.mean())
-    assert mean == pytest.approx(1.8, abs=0.002)
+    assert mean == pytest.approx(5 / 3, abs=0.002)
     rest = 0.950213 * 1.8 * mean / 3 + 0.049787 * 0.16 * 1.8 * mean
     found = by_values((2, True), (1, False))
     assert found == pytest.approx(math.log(rest + math.exp(UNCHANGED)), abs=1e-5)
-    assert found == pytest.approx(math.log(1.052), abs=0.005)
+    assert found == pytest.approx(math.log(0.974), abs=0.005)
     as_text = by_values((2, True), (1, False), ordered=False)
     assert as_text == pytest.approx(math.log(0.16 * 1.8 * mean + math.exp(UNCHANGED)), abs=1e-5)
 
@@ -106,9 +106,9 @@ def test_a_value_that_is_drawn_anew_for_each_mission_explains_nothing():
     assert by_values(*drawn) < 0
 
 
-# Half right and half wrong: log((1 + 0.2) / 2) = -0.51 each; not less than half of UNCHANGED.
+# Half right and half wrong: log((1 + 1/3) / 2) = -0.41 each; not less than half of UNCHANGED.
 def test_missions_without_a_known_value_say_little():
-    assert by_values((math.nan, True), (1, False)) == pytest.approx(math.log(0.6))
+    assert by_values((math.nan, True), (1, False)) == pytest.approx(math.log(2 / 3))
     many = by_values(*[(math.nan, True)] * 100, (1, False))
     assert many == pytest.approx(UNCHANGED / 2)
     known = by_values((2, True), (1, False))
@@ -130,27 +130,61 @@ def two_bad():
     return Rows.of(table([digest(one, number) for one in flights for number in (0, 1, 2)]))
 
 
-# Two suspects: 0.4 each before. p0: log((0.8 * 0.7 + 0.2 * 0.4) / (0.8 * 0.2 + 0.2 * 0.2)) -
-# log(0.4 / 0.2) = log(0.64 / 0.2) - log(2) = log(1.6). p1: log(0.16 / 0.2) - log(2) = log(0.4).
-# p2 was not compared. Of two missions with 1 / (1 + 0.25) of each.
-def test_diagnoses_of_missions_are_joined():
+# Two suspects: 0.4 each before, so R is 0.7 / 0.4 = 1.75 and 0.1 / 0.4; p2 was not compared. "None
+# of them" is as likely as before.
+def test_one_mission_says_what_its_diagnosis_says():
     one = [("m1", "/nav/p0", 0.7, 0.2), ("m1", "/nav/p1", 0.1, 0.2)]
     rows = two_bad()
     found = joined(rows, rows.parameters, diagnoses(*one))
-    expected = np.array([math.log(1.6), math.log(0.4), 0.0])
-    assert found.evidence == pytest.approx(expected)
-    both = joined(rows, rows.parameters, diagnoses(*one, *(("m2", *rest) for _, *rest in one)))
-    assert both.evidence == pytest.approx(2 / 1.25 * expected)
-    assert (found.missions, both.missions) == (1, 2)
+    expected = [math.log(1.75), math.log(0.25), 0.0]
+    assert found.evidence == pytest.approx(expected, abs=1e-4)
+    assert (found.missions, found.none) == (1, pytest.approx(0.0, abs=1e-4))
 
 
-# m2 alone is sure of p1: with s = 0.2 it takes at most log(0.2 * 0.4 / (0.8 * 0.01 + 0.04)) - log 2
-# = log(0.08 / 0.048 / 2) = -0.18 from p0.
+# Of two missions with R = 1.75: ((1 + 0.75 x)^2 - (1 - x)^2) / (1 - (1 - x)^2) = (3.5 - 0.4375 x) /
+# (2 - x). Both count as 2 / (1 + 0.25) = 1.6 missions: 0.8 of the log. "None of them", which is
+# likely in one mission and not in the other (R = 4 and 0.25), is "apart" in 0.25.
+def test_diagnoses_of_missions_are_joined():
+    rows = two_bad()
+    both = [(mission, "/nav/p0", 0.7, none) for mission, none in (("m1", 0.8), ("m2", 0.05))]
+    # One suspect each: R is 0.7 / 0.8 = 0.875.
+    found = joined(rows, rows.parameters, diagnoses(*both))
+    x = EXPLAINED
+    ratio = ((1 - 0.125 * x) ** 2 - (1 - x) ** 2) / (1 - (1 - x) ** 2)
+    assert found.evidence[0] == pytest.approx(0.8 * math.log(ratio.mean()), abs=1e-4)
+    ratio = ((1 + 3 * x) * (1 - 0.75 * x) - (1 - x) ** 2) / (1 - (1 - x) ** 2)
+    expected = math.log(0.25 + 0.75 * ratio.mean() ** 0.8)
+    assert found.none == pytest.approx(expected, abs=1e-4)
+    four = [(m, f"/nav/p{k}", (0.7, 0.1)[k], 0.2) for m in ("m1", "m2") for k in (0, 1)]
+    found = joined(rows, rows.parameters, diagnoses(*four))
+    ratio = (3.5 - 0.4375 * x) / (2 - x)
+    assert found.evidence[0] == pytest.approx(0.8 * math.log(ratio.mean()), abs=1e-4)
+
+
+# R is 1.75 in m1 and 0 in m2: (1 + 0.75 x) (1 - x) - (1 - x)^2 = 1.75 x (1 - x), by x (2 - x).
 def test_one_diagnosis_vetoes_nothing():
     rows = two_bad()
-    sure = diagnoses(("m2", "/nav/p0", 1e-300, 0.01), ("m2", "/nav/p1", 0.99, 0.01))
-    found = joined(rows, rows.parameters, sure)
-    assert found.evidence[0] == pytest.approx(math.log(0.08 / 0.048 / 2))
+    given = [("m1", "/nav/p0", 0.7, 0.2), ("m1", "/nav/p1", 0.1, 0.2)]
+    given += [("m2", "/nav/p0", 1e-300, 0.01), ("m2", "/nav/p1", 0.99, 0.01)]
+    found = joined(rows, rows.parameters, diagnoses(*given))
+    ratio = 1.75 * (1 - EXPLAINED) / (2 - EXPLAINED)
+    assert found.evidence[0] == pytest.approx(0.8 * math.log(ratio.mean()), abs=1e-4)
+    assert found.evidence[0] > -1
+
+
+# Twelve missions, four of each cause. With R = 10.5 in four and 0.15 in eight, x = 1 / 3 alone has
+# 4 log(4.17) + 8 log(0.72) = 3.1.
+def test_three_causes_in_one_fleet_are_all_found():
+    flights = [Flight(f"m{n:02}", day=1 + n, verdict="bad") for n in range(12)]
+    rows = Rows.of(table([digest(one, k) for one in flights for k in range(12)]))
+    given = [
+        (f"m{n:02}", f"/nav/p{k}", 0.7 if n % 3 == k else 0.01, 0.19)
+        for n in range(12)
+        for k in range(12)
+    ]
+    found = joined(rows, rows.parameters, diagnoses(*given)).evidence.tolist()
+    positive = [name for name, one in zip(rows.parameters, found, strict=True) if one > 0]
+    assert positive == ["/nav/p0", "/nav/p1", "/nav/p2"]
 
 
 def test_diagnoses_of_good_and_unknown_missions_do_not_count():
@@ -302,9 +336,9 @@ def test_without_a_difference_it_is_none_of_the_parameters():
 def test_probabilities_by_hand():
     rows = [digest(Flight("m1", verdict="bad"), 0, 0.9), digest(Flight("m2", day=2), 0, 0.5)]
     found = rank_fleet(Rows.of(table(rows)))
-    # One parameter: 0.8 against 0.2 before; the evidence of its values is log(1.052), half of it.
-    odds = 4 * math.sqrt(1.052)
-    assert found.suspects[0].evidence.values == pytest.approx(VALUES * math.log(1.052), abs=0.003)
+    # One parameter: 0.8 against 0.2 before; the evidence of its values is log(0.974), half of it.
+    odds = 4 * math.sqrt(0.974)
+    assert found.suspects[0].evidence.values == pytest.approx(VALUES * math.log(0.974), abs=0.003)
     assert found.none == pytest.approx(1 / (1 + odds), abs=0.001)
 
 

@@ -1,10 +1,10 @@
 """Which margins of a fleet rise or fall from day to day, and when they will be 0.
 
-Per robot and comparison, and over the fleet, the medians of each day form a series: of the least
-margins of the missions, as long as the comparison never turns, and of their median margins. Another
-setting begins a new series, and only the last one says what will come. Its trend is that of
-`pytpc.diagnosis.trend`. Over the fleet each robot's own level is taken out first, so that it does
-not matter which robots flew on a day.
+Per robot and comparison, the medians of each day form a series: of the least margins of the
+missions, as long as the comparison never turns, and of their median margins. Another setting begins
+a new series, and only the last one says what will come. Over the fleet the series of all robots
+are judged together; only days of one robot are compared, so that it does not matter which robots
+flew on a day.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from pytpc.diagnosis.fleet.group_medians import group_medians
 from pytpc.diagnosis.fleet.rows import Rows
 from pytpc.diagnosis.fleet.settings import same_numbers
 from pytpc.diagnosis.results.fleet import WHOLE_FLEET, FleetDrift, FleetDrifts, FleetPlace
-from pytpc.diagnosis.trend import Line, lines_of, trend_of
+from pytpc.diagnosis.trend import Line, joint_trend, lines_of
 
 FEWEST_DAYS = 5
 """Fewer days have no trend."""
@@ -43,7 +43,7 @@ Measure = Literal["least", "median"]
 
 
 class _Days(NamedTuple):
-    """One series: ``which`` comparison, its ``day`` numbers and their ``values``, float64[d].
+    """A series, or those of several robots: ``which`` comparison, and days with medians of each.
 
     ``threshold`` is nan if there are several, ``turned`` counts turns.
     """
@@ -51,10 +51,14 @@ class _Days(NamedTuple):
     robot: str
     which: int
     measure: Measure
-    day: Floats
-    values: Floats
+    parts: tuple[tuple[Floats, Floats], ...]
     threshold: float
     turned: int
+
+    @property
+    def days(self) -> Floats:
+        """All days, sorted."""
+        return np.unique(np.concatenate([day for day, _ in self.parts]))
 
 
 class _Found(NamedTuple):
@@ -79,8 +83,8 @@ def fleet_drift(rows: Rows) -> FleetDrifts:
     chances: list[float] = []
     short = 0
     for series in _all_series(rows, days):
-        trend = trend_of(series.day, series.values)
-        if trend is None or series.day.size < FEWEST_DAYS:
+        trend = joint_trend(series.parts)
+        if trend is None or series.days.size < FEWEST_DAYS:
             short += 1
             continue
         chances.append(trend.chance)
@@ -130,25 +134,23 @@ def _all_series(rows: Rows, days: Int64s) -> Iterator[_Days]:
     turns_of = dict(zip(group[starts].tolist(), turned.tolist(), strict=True))
     never = np.repeat(turned == 0, np.diff(np.append(starts, group.size)))
     for measure, values in _measured(columns, never):
+        alike: dict[int, list[_Days]] = {}
         for own, at, medians in _by_day(group, day, values):
-            name = rows.robots[own % robots]
-            yield _Days(name, own // robots, measure, at, medians, threshold[own], turns_of[own])
-    which = group // robots
-    for measure, values in _measured(columns, never):
-        level = group_medians(group, values)
-        several = np.bincount(level.group // robots, minlength=len(rows.series)) > 1
-        whole = group_medians(level.group // robots, level.median)
-        own_level = np.full(int(group.max(initial=0)) + 1, np.nan)
-        own_level[level.group] = level.median
-        fleet_level = np.full(len(rows.series), np.nan)
-        fleet_level[whole.group] = whole.median
-        moved = np.where(several[which], values - own_level[group] + fleet_level[which], np.nan)
-        for one, at, medians in _by_day(which, day, moved):
-            robots_of = [own for own in threshold if own // robots == one]
-            settings = {threshold[own] for own in robots_of}
-            setting = settings.pop() if len(settings) == 1 else np.nan
-            turned_all = sum(turns_of[own] for own in robots_of)
-            yield _Days(WHOLE_FLEET, one, measure, at, medians, setting, turned_all)
+            name, part = rows.robots[own % robots], ((at, medians),)
+            one = _Days(name, own // robots, measure, part, threshold[own], turns_of[own])
+            alike.setdefault(one.which, []).append(one)
+            yield one
+        for which, several in alike.items():
+            if len(several) > 1:
+                settings = {one.threshold for one in several}
+                yield _Days(
+                    WHOLE_FLEET,
+                    which,
+                    measure,
+                    tuple(part for one in several for part in one.parts),
+                    settings.pop() if len(settings) == 1 else np.nan,
+                    sum(one.turned for one in several),
+                )
 
 
 def _measured(columns: dict[str, Floats], never: Bools) -> Iterator[tuple[Measure, Floats]]:
@@ -183,8 +185,9 @@ def _by_day(group: Int64s, day: Int64s, values: Floats) -> Iterator[tuple[int, F
 
 
 def _drift(rows: Rows, series: _Days, chance: float) -> _Found:
-    begin, end = float(series.day[0]), float(series.day[-1])
-    line, steepest, flattest = lines_of(series.day - begin, series.values)
+    days = series.days
+    begin, end = float(days[0]), float(days[-1])
+    line, steepest, flattest = lines_of([(day - begin, one) for day, one in series.parts])
     furthest = end + AHEAD * (end - begin)
     zero = _day_of_zero(line, begin, (end, furthest))
     early, late = (_day_of_zero(one, begin, (end, furthest)) for one in (steepest, flattest))
@@ -195,7 +198,7 @@ def _drift(rows: Rows, series: _Days, chance: float) -> _Found:
         measure=series.measure,
         since=_text(begin),
         until=_text(end),
-        days=series.day.size,
+        days=days.size,
         threshold=None if np.isnan(series.threshold) else float(tidy(series.threshold)),
         now=line.at(end - begin),
         per_day=line.slope,

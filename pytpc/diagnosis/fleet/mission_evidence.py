@@ -1,23 +1,27 @@
 r"""What the diagnoses of the bad missions say together, as of one common cause.
 
-Each bad mission has its own diagnosis beside good runs: a probability of each of its n parameters
-and of "none of them". The evidence of a mission for a parameter is how much its odds against "none"
-rose over those before any evidence, which are (1 - NONE) / n against NONE:
+Each bad mission has its own diagnosis beside good runs: a probability P of each of its n
+parameters, and of "none of them". Before any evidence these are (1 - NONE) / n and NONE; R is P by
+that. If a parameter is the common cause of the part x of the bad missions, the diagnoses are so
+much likelier than if each mission had a cause of its own:
 
-    log( ((1 - s) P(p) + s (1 - NONE) / n) / ((1 - s) P(none) + s NONE) )
-      - log( (1 - NONE) / n / NONE )
+    the mean over x of  (product of (x R + 1 - x)  -  product of (1 - x)) / (1 - product of (1 - x))
 
-With probability s (``OTHER``) the mission has another cause than the others, or its marks were
-slips; then its diagnosis says nothing of the common cause. So no mission vetoes a parameter, and
-none is sure alone. "None of them" has the evidence 0 by this, and is joined as one more suspect.
+A mission with another cause, or with marks that were slips, says nothing of the common one. So no
+mission decides or vetoes anything alone, and several causes in one fleet are all found. At least
+one mission has the common cause: of one bad mission the ratio is R, and the fleet says what its
+diagnosis says. A mission that never compared the parameter says nothing of it.
 
-The sum over the k missions is taken as that of k / (1 + (k - 1) r) independent ones (Kish 1965):
-their errors are alike, as the same consequence of the error turns in each of them. A mission that
-never compared the parameter says nothing of it, and counts 0.
+"None of them" is one more suspect with its own R; or, the likelier the more missions there are,
+each mission has another cause (``APART``), with the ratio 1.
+
+The log over k missions is taken as that of k / (1 + (k - 1) r) independent ones (Kish 1965): their
+errors are alike, as the same consequence of the error turns in each of them.
 """
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -27,7 +31,8 @@ from pytpc.base.columns import Floats, Int32s, Int64s
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.fleet.rank_sum import summed
 from pytpc.diagnosis.fleet.rows import Rows, each_pair, numbers_of, without_robot, words_of
-from pytpc.diagnosis.fleet.value_evidence import OTHER
+from pytpc.diagnosis.fleet.value_evidence import EXPLAINED
+from pytpc.diagnosis.ranking.known_good import UNCHANGED
 from pytpc.static.parameters import ByParameter
 
 NONE = 0.2
@@ -39,13 +44,19 @@ ALIKE = 0.25
 most four: by reason, as a diagnosis that is wrong is mostly wrong about what follows the error."""
 
 
-class Diagnoses(NamedTuple):
-    """``evidence`` float64[p], see the module's docstring; so many ``missions`` have a diagnosis.
+APART = 0.5
+"""The part of "none of them" that is several causes, if there are many missions."""
 
-    ``position`` float64[p] is the mean position by another ranking, nan where none is given.
+
+class Diagnoses(NamedTuple):
+    """``evidence`` float64[p] and that of ``none``, in log odds; see the module's docstring.
+
+    So many ``missions`` have a diagnosis. ``position`` float64[p] is the mean position by another
+    ranking, nan where none is given.
     """
 
     evidence: Floats
+    none: float
     position: Floats
     missions: int
 
@@ -66,7 +77,7 @@ def joined(rows: Rows, names: tuple[str, ...], table: pa.Table | None) -> Diagno
             name and the table does not say whose it is.
     """
     if table is None or not table.num_rows:
-        return Diagnoses(np.zeros(len(names)), np.full(len(names), np.nan), 0)
+        return Diagnoses(np.zeros(len(names)), 0.0, np.full(len(names), np.nan), 0)
     mission = _missions(rows, table)
     column = _columns(rows, names, table, mission)
     found, none = numbers_of(table, "log_probability"), numbers_of(table, "log_none")
@@ -75,15 +86,37 @@ def joined(rows: Rows, names: tuple[str, ...], table: pa.Table | None) -> Diagno
     mission, column = mission[counted], column[counted]
     found, none = found[counted], none[counted]
     suspects = np.bincount(mission, minlength=len(rows.missions))[mission]
-    before = (1.0 - NONE) / np.maximum(1, suspects)
-    evidence = np.log((1.0 - OTHER) * np.exp(np.minimum(found, 0.0)) + OTHER * before)
-    evidence -= np.log((1.0 - OTHER) * np.exp(np.minimum(none, 0.0)) + OTHER * NONE)
-    evidence -= np.log(before / NONE)
+    ratio = np.exp(np.minimum(found, 0.0)) * np.maximum(1, suspects) / (1.0 - NONE)
     own = column >= 0
     count = int(np.unique(mission).size)
-    weight = 1.0 / (1.0 + max(0, count - 1) * ALIKE)
-    total = weight * summed(column[own], evidence[own], len(names))
-    return Diagnoses(total, _positions(table, counted[own], column[own], len(names)), count)
+    alike = 1.0 / (1.0 + max(0, count - 1) * ALIKE)
+    first = np.unique(mission, return_index=True)[1]
+    of_none = np.exp(np.minimum(none[first], 0.0)) / NONE
+    nobody = float(alike * _common(np.zeros(count, np.int64), of_none, 1)[0])
+    apart = APART * (1.0 - 1.0 / max(1, count))
+    return Diagnoses(
+        alike * _common(column[own], ratio[own], len(names)),
+        math.log(apart + (1.0 - apart) * math.exp(nobody)),
+        _positions(table, counted[own], column[own], len(names)),
+        count,
+    )
+
+
+def _common(column: Int32s | Int64s, ratio: Floats, count: int) -> Floats:
+    """float64[count]: the log of the ratio that the module's docstring gives; 0 without a row."""
+    columns, own = np.unique(column, return_inverse=True)
+    missions = np.bincount(own, minlength=columns.size)
+    found = np.empty((EXPLAINED.size, columns.size))
+    for place, part in enumerate(EXPLAINED.tolist()):
+        both = summed(own, np.log(part * ratio + (1.0 - part)), columns.size)
+        nothing = missions * math.log1p(-part)
+        with np.errstate(divide="ignore"):
+            some = np.log(-np.expm1(np.minimum(nothing - both, 0.0)))
+        found[place] = both + some - np.log(-np.expm1(nothing))
+    mean = np.logaddexp.reduce(found, axis=0) - math.log(EXPLAINED.size)
+    every = np.zeros(count)
+    every[columns] = np.logaddexp(mean, UNCHANGED)
+    return every
 
 
 def _missions(rows: Rows, table: pa.Table) -> Int32s:

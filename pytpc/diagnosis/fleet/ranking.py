@@ -12,9 +12,10 @@ The score of a parameter, in log odds against "none of them", is
   missions of one day share people, place and weather.
 - *behaviour*: bounded, see `behaviour_evidence`.
 
-The probabilities are the scores' softmax with 0 for "none of them". Beside them stand two methods
-of the study: Importance (`pytpc.diagnosis.importance`) with missions as runs, and the share of bad
-missions with a value that no good one has. docs/reference/scores.md#fleets has all formulas.
+The probabilities are the scores' softmax with what the diagnoses say of "none of them", which is 0
+without any. Beside them stand two methods of the study: Importance (`pytpc.diagnosis.importance`)
+with missions as runs, and the share of bad missions with a value that no good one has.
+docs/reference/scores.md#fleets has all formulas.
 """
 
 from __future__ import annotations
@@ -108,7 +109,7 @@ def _scored(rows: Rows, settings: Settings, diagnoses: Diagnoses) -> _Scored:
     prior[compared:] += UNKNOWN_CHARGE
     scores = prior + diagnoses.evidence + VALUES * values + behaviour
     scores = np.where(suspected, scores, -np.inf)
-    probability, none = softmax(scores, 0.0)
+    probability, none = softmax(scores, diagnoses.none)
     importance = np.append(fleet_importance(rows), np.zeros(every - compared))
     return _Scored(
         prior, diagnoses, values, found, behaviour, scores, probability, none, importance

@@ -11,7 +11,7 @@ with b bad and g good missions in W, and the beta function B: the share of missi
 with a wrong value is not known, and mostly near nine tenths (``MOSTLY``). P(bad) is the share of
 bad missions of the robot, drawn towards that of the fleet (``TOWARDS``): so not all settings of a
 robot that often goes wrong are suspicious. x is the part of the bad missions that the parameter
-explains. It is not known either, and mostly near four fifths (``COMMON``); the mean over x counts.
+explains. It is not known either, and mostly more than half (``COMMON``); the mean over x counts.
 So a bad mission with a value that is right has another cause, or its marks were slips, and vetoes
 nothing.
 
@@ -41,18 +41,18 @@ MOSTLY = (9, 1)
 """Missions that go wrong with a wrong value, and those that do not: what is known before. The error
 needs the situation in which it shows, and somebody who sees it."""
 
-COMMON = (4, 1)
-"""Bad missions that the common cause explains, and others: in the study one treatment in five has
-no parameter to blame. Another cause, or a mark that was a slip, is as usual in a fleet."""
+COMMON = 2
+"""The part of the bad missions that the common cause explains has the density 2 x: two thirds in
+the mean. In the study one treatment in five has no parameter to blame; in a fleet marks are slips,
+and several things go wrong at once."""
 
-OTHER = COMMON[1] / sum(COMMON)
-"""The share of bad missions that have another cause, before any is known."""
+OTHER = 1.0 / (COMMON + 1.0)
+"""The part of the bad missions that have another cause, before any is known."""
 
 _ROUNDING = 1e-9
 _PARTS = 16
-EXPLAINED = ((np.arange(_PARTS) + 0.5) / _PARTS) ** (1.0 / COMMON[0])
-"""The parts x of the bad missions that are explained, each as likely: quantiles of the beta
-distribution with ``COMMON``, whose second number is 1."""
+EXPLAINED = ((np.arange(_PARTS) + 0.5) / _PARTS) ** (1.0 / COMMON)
+"""The parts x of the bad missions that are explained, each as likely: quantiles of ``COMMON``."""
 
 TOWARDS = 4
 """So many missions of the whole fleet count to each robot's own. A few, as robots differ."""
