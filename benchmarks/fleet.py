@@ -5,10 +5,11 @@ made, added and removed in batches, so that a thousand missions of a million rep
 a tenth of that: ``--missions 1000 --reports 1000000``.
 
 Rates are of processor time, and of the missions behind the first: what a start takes is shown by
-itself. ``two_workers`` compares the time on the wall of one worker process and of two, also behind
-the first mission. A scheduler of Dask runs in a network of its own (``unshare``), whose bytes are
-counted; where that is not possible, these figures are left out. The last lines are calculated:
-10,000 missions on 100 workers, from what a task and a message took. Each says what it is made of.
+itself. ``two_workers`` compares the processor time of one worker process with that of the busier
+one of two, which is what a quiet machine of two cores would show on the wall; what the wall did
+show stands beside it. The scheduler of Dask runs in a network of its own (``unshare``), whose bytes
+are counted; where that is not possible, these figures are left out. ``calculated`` is 10,000
+missions on 100 workers, from what a task, its messages and its scheduling took.
 """
 
 from __future__ import annotations
@@ -23,21 +24,25 @@ import sys
 import tempfile
 import time
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 from figures import figure
 
 from pytpc_evaluation.fleet.generating import generate, mission_folder
-from pytpc_evaluation.fleet.world import World, WorldSettings
+from pytpc_evaluation.fleet.world import World, WorldSettings, parameter_of
 
 ROOT = Path(__file__).parents[1]
 TOPIC = "fleet"
-ROUNDS = 3
 KEPT = 24
 """So many missions are added again for the comparisons."""
+LONG = 6
+"""So many missions of a million reports are added."""
 RAW_BYTES = 32
 MANY, WORKERS = 10_000, 100
 """What is calculated."""
+_ALONE = ("unshare", "--user", "--map-root-user", "--net")
 _PYTPC = (sys.executable, "-m", "pytpc")
 _ENV = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, (ROOT, ROOT / "evaluation")))}
 
@@ -97,6 +102,28 @@ def add(fleet: Path, raw: Path, *words: str) -> Ran:
     return pytpc("fleet", "add", str(fleet), str(raw), "--json", *words)
 
 
+def long_missions(folder: Path) -> None:
+    """Add missions of a million reports, of which each costs little beside its reports."""
+    raw = folder / "long"
+    made = generate(WorldSettings(missions=LONG, reports=10**6), raw, jobs=os.cpu_count() or 1)
+    one = add(folder / "long_one", raw / made["missions"][0]["folder"])
+    ran = add(folder / "long_fleet", raw)
+    rate = (reports_in(ran) - reports_in(one)) / (ran.processor - one.processor)
+    figure(TOPIC, "add_per_core", rate, unit="reports/s", target=">=3e6", hit=rate >= 3e6)
+    for name in ("long", "long_one", "long_fleet"):
+        shutil.rmtree(folder / name)
+
+
+def right(world: World, answer: dict[str, Any]) -> None:
+    """How many of the parameters that are wrong come first, before all others."""
+    wrong = {parameter_of(one.decision).rpartition("/")[2] for one in world.culprits}
+    first = [one["parameter"].strip("~/").rpartition("/")[2] for one in answer["suspects"]]
+    found = sum(name in wrong for name in first[: len(wrong)])
+    is_first = bool(first) and first[0] in wrong
+    target = f"first_of_{len(wrong)}"
+    figure(TOPIC, "rank_wrong_ones_first", found, unit="parameters", target=target, hit=is_first)
+
+
 @dataclass
 class Measured:
     """What the calculations are made of, of one mission each."""
@@ -133,131 +160,119 @@ def whole(settings: WorldSettings, folder: Path, batch: int) -> Measured:
         if begun * 2 < settings.missions <= numbers.stop * 2 and numbers.stop < settings.missions:
             asked(fleet, numbers.stop)
         begun = numbers.stop
-    rate = reports / processor
-    figure(TOPIC, "add_per_core", rate, unit="reports/s", target=">=3e6", hit=rate >= 3e6)
+    show(f"add_{settings.reports}_per_core", reports / processor, "reports/s")
     size = size_of(fleet)
     each = size / reports
     figure(TOPIC, "bytes_per_report", each, unit="B", target="<=3", hit=each <= 3)
     show("raw_bytes_per_report", raw_bytes / reports, "B")
-    asked(fleet, settings.missions)
+    right(world, asked(fleet, settings.missions))
     count = settings.missions
     return Measured(reports / count, size / count, raw_bytes / count)
 
 
-def asked(fleet: Path, missions: int) -> None:
-    """Ask which parameter it is, by threads."""
+def asked(fleet: Path, missions: int) -> Any:  # noqa: ANN401 - JSON
+    """Ask which parameter it is, by threads; the answer."""
     ran = pytpc("fleet", "rank", str(fleet), "--json")
     name, is_large = f"rank_{missions}", missions >= 1000
     target = "<30" if is_large else "none"
     figure(TOPIC, name, ran.wall, unit="s", target=target, hit=not is_large or ran.wall < 30)
     show(f"{name}_processor", ran.processor, "s")
+    return json.loads(ran.output)
 
 
-def two_workers(folder: Path) -> None:
-    """One worker process against two: time on the wall behind the first mission."""
-    one, raw = folder / "one", folder / "kept"
-    questions = {
-        "add": (lambda n: add_alone(folder, one, n), lambda n: add_alone(folder, raw, n)),
-        "rank": (
-            lambda n: pytpc("fleet", "list", str(folder / "fleet"), *local(n)),
-            lambda n: pytpc("fleet", "rank", str(folder / "fleet"), *local(n)),
-        ),
-    }
-    for name, (start, work) in questions.items():
-        taken: dict[int, list[float]] = {1: [], 2: []}
-        for _ in range(ROUNDS):
-            for workers, found in taken.items():
-                found.append(work(workers).wall - start(workers).wall)
-        ratio = min(taken[1]) / min(taken[2])
-        figure(TOPIC, f"two_workers_{name}", ratio, unit="ratio", target=">=1.8", hit=ratio >= 1.8)
+def same_results(folder: Path, scheduled: dict[str, Any]) -> None:
+    """Whether threads, processes and a scheduler give the same data set and the same answer."""
+    local = ("--cluster", "local", "--workers", "2")
+    answers = {scheduled["rank_kept"]["output"]}
+    for name, words in (("threads", ()), ("processes", local)):
+        add(folder / name, folder / "kept", *words)
+        answers.add(pytpc("fleet", "rank", str(folder / "kept_fleet"), "--json", *words).output)
+    digests = {digest_of(folder / name) for name in ("threads", "processes", "kept_fleet")}
+    same = len(digests) == len(answers) == 1
+    figure(TOPIC, "same_results", float(same), unit="bool", target="1", hit=same)
 
 
-def local(workers: int) -> tuple[str, ...]:
-    """Options: so many worker processes."""
-    return "--cluster", "local", "--workers", str(workers), "--json"
-
-
-def add_alone(folder: Path, raw: Path, workers: int) -> Ran:
-    """Add missions to a fleet that is made for that."""
-    fleet = folder / "alone"
-    shutil.rmtree(fleet, ignore_errors=True)
-    return pytpc("fleet", "add", str(fleet), str(raw), *local(workers))
-
-
-def cluster(folder: Path, measured: Measured, missions: int) -> None:
-    """The same by threads, processes and a scheduler; messages, memory and what follows."""
-    one, raw, fleet = folder / "one", folder / "kept", folder / "fleet"
-    kept = sum(1 for _ in raw.glob("r*/*"))
-    for name, words in (("threads", ()), ("processes", local(2)[:-1])):
-        add(folder / name, raw, *words)
-    ranks = {
-        name: pytpc("fleet", "rank", str(folder / "threads"), "--json", *words).output
-        for name, words in (("threads", ()), ("processes", local(2)[:-1]))
-    }
+def on_cluster(folder: Path, workers: int) -> dict[str, Any]:
+    """What it takes on a scheduler with so many workers: see `fleet_cluster`."""
     there = ("--cluster", "ADDRESS", "--json")
-    commands = [
-        [*_PYTPC, "fleet", "add", str(folder / "scheduled_one"), str(one), *there],
-        [*_PYTPC, "fleet", "add", str(folder / "scheduled"), str(raw), *there],
-        [*_PYTPC, "fleet", "rank", str(folder / "threads"), *there],
-        [*_PYTPC, "fleet", "rank", str(fleet), *there],
-    ]
-    job = json.dumps({"workers": 2, "commands": commands})
-    script = [sys.executable, str(Path(__file__).with_name("fleet_cluster.py"))]
-    alone = ["unshare", "--user", "--map-root-user", "--net"]
-    is_alone = subprocess.run([*alone, "true"], capture_output=True, check=False).returncode == 0
+    for name in ("one_fleet", "warm_fleet", "kept_fleet"):
+        shutil.rmtree(folder / name, ignore_errors=True)
+    command = {
+        # Before they are measured, all workers have imported what they need.
+        "warm_add": ("add", folder / "warm_fleet", folder / "kept"),
+        "warm_rank": ("rank", folder / "warm_fleet"),
+        "add_one": ("add", folder / "one_fleet", folder / "one"),
+        "add_kept": ("add", folder / "kept_fleet", folder / "kept"),
+        "rank_kept": ("rank", folder / "kept_fleet"),
+        "rank_all": ("rank", folder / "fleet"),
+    }
+    commands = {
+        name: [*_PYTPC, "fleet", *map(str, words), *there] for name, words in command.items()
+    }
+    script = Path(__file__).with_name("fleet_cluster.py")
     done = subprocess.run(
-        [*(alone if is_alone else ()), *script],
-        input=job,
+        [*(_ALONE if can_be_alone() else ()), sys.executable, str(script)],
+        input=json.dumps({"workers": workers, "commands": commands}),
         stdout=subprocess.PIPE,
         text=True,
         check=True,
         env=_ENV,
     )
-    found = json.loads(done.stdout)
-    first, added, few, asked_all = found["commands"]
-    digests = {digest_of(folder / name) for name in ("threads", "processes", "scheduled")}
-    same = len(digests) == 1 and len({*ranks.values(), few["output"]}) == 1
-    figure(TOPIC, "same_results", float(same), unit="bool", target="1", hit=same)
-    peak = found["peak_mb"]
+    found: dict[str, Any] = json.loads(done.stdout)
+    return found
+
+
+@cache
+def can_be_alone() -> bool:
+    """Whether a command can have a network of its own here."""
+    return subprocess.run([*_ALONE, "true"], capture_output=True, check=False).returncode == 0
+
+
+def cluster(folder: Path, measured: Measured, missions: int) -> None:
+    """One worker process against two, memory, messages, the same results, and what follows."""
+    one, two = on_cluster(folder, 1)["commands"], on_cluster(folder, 2)
+    peak, two = two["peak_mb"], two["commands"]
+    for name, asked_for in (("add", "add_kept"), ("rank", "rank_all")):
+        ratio = one[asked_for]["busiest_s"] / two[asked_for]["busiest_s"]
+        figure(TOPIC, f"two_workers_{name}", ratio, unit="ratio", target=">=1.8", hit=ratio >= 1.8)
+        show(f"one_worker_{name}_wall", one[asked_for]["seconds"], "s")
+        show(f"two_workers_{name}_wall", two[asked_for]["seconds"], "s")
     figure(TOPIC, "worker_peak", peak, unit="MB", target="<=2000", hit=peak <= 2000)
-    per = {
-        name: (added[name] - first[name]) / (kept - 1)
-        for name in ("bytes", "workers_s", "scheduler_s")
-    }
-    show("add_task", per["workers_s"], "s")
-    show("add_scheduler_per_task", per["scheduler_s"], "s")
-    if is_alone:
-        show("add_messages_per_mission", per["bytes"], "B")
-        show("rank_messages", asked_all["bytes"], "B")
-    else:
+    same_results(folder, two)
+    if not can_be_alone():
         print("no network of its own (unshare): bytes are not counted", file=sys.stderr)
-    calculated(measured, per, asked_all, missions, is_alone=is_alone)
+    calculated(measured, two, missions)
 
 
-def calculated(
-    measured: Measured,
-    per: dict[str, float],
-    ranked: dict[str, float],
-    missions: int,
-    *,
-    is_alone: bool,
-) -> None:
-    """Many missions on many workers: what is slower, all tasks on the workers or the scheduler.
+def calculated(measured: Measured, taken: dict[str, Any], missions: int) -> None:
+    """Many missions on many workers: what is slower, the tasks on the workers or the scheduler.
 
-    Ranking is scaled up as if all of it grew with the missions, which is too much: of the bad ones
-    some are judged one by one, and no more.
+    A mission costs what those behind the first ones cost. For a ranking that is too much: of the
+    bad missions some are judged one by one, and no more.
     """
-    scale = MANY / missions
-    add_s = max(MANY * per["workers_s"] / WORKERS, MANY * per["scheduler_s"])
+    kept = min(KEPT, missions)
+
+    def added(what: str) -> float:
+        few, more = taken["add_one"][what], taken["add_kept"][what]
+        return max(0.0, (more - few) / (kept - 1))
+
+    def ranked(what: str) -> float:
+        few, more = taken["rank_kept"][what], taken["rank_all"][what]
+        return float(few + max(0.0, more - few) / max(1, missions - kept) * (MANY - kept))
+
+    show("add_task", added("workers_s"), "s")
+    show("add_scheduler_per_task", added("scheduler_s"), "s")
+    add_s = MANY * max(added("workers_s") / WORKERS, added("scheduler_s"))
     show(f"calculated_add_{MANY}_on_{WORKERS}", add_s, "s")
-    rank_s = max(ranked["workers_s"] * scale / WORKERS, ranked["scheduler_s"] * scale)
+    rank_s = max(ranked("workers_s") / WORKERS, ranked("scheduler_s"))
     show(f"calculated_rank_{MANY}_on_{WORKERS}", rank_s, "s")
-    show(f"calculated_disk_{MANY}", MANY * measured.stored / 1e9, "GB")
-    show(f"calculated_add_{MANY}_read_and_written", MANY * (measured.raw + measured.stored) / 1e9,
-         "GB")  # fmt: skip
-    if is_alone:
-        show(f"calculated_add_{MANY}_messages", MANY * per["bytes"] / 1e9, "GB")
-        show(f"calculated_rank_{MANY}_messages", ranked["bytes"] * scale / 1e9, "GB")
+    show(f"calculated_{MANY}_raw", MANY * measured.raw / 1e9, "GB")
+    show(f"calculated_{MANY}_stored", MANY * measured.stored / 1e9, "GB")
+    if can_be_alone():
+        show("add_messages_per_mission", added("bytes"), "B")
+        show("rank_messages", taken["rank_all"]["bytes"], "B")
+        show(f"calculated_add_{MANY}_messages", MANY * added("bytes") / 1e6, "MB")
+        show(f"calculated_rank_{MANY}_messages", ranked("bytes") / 1e6, "MB")
 
 
 def main() -> None:
@@ -274,8 +289,8 @@ def main() -> None:
     batch = max(2, min(-(-given.missions // 2), int(given.raw * 1e9 / RAW_BYTES / given.reports)))
     with tempfile.TemporaryDirectory(dir=given.folder) as name:
         folder = Path(name)
+        long_missions(folder)
         measured = whole(settings, folder, batch)
-        two_workers(folder)
         cluster(folder, measured, given.missions)
 
 

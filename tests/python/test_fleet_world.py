@@ -264,6 +264,17 @@ def test_the_clock_of_one_robot_is_off(fleet):
         assert off_h == (987 if world.robot_name(plan.robot) == truth["clock_off"] else 0)
 
 
+def test_many_missions_of_a_day_have_their_own_names_and_times():
+    # 167 missions a day and robot, in 14 hours: one each 5 minutes.
+    world = World(WorldSettings(missions=10_020))
+    plans = [world.plan(number) for number in range(0, 10_020, 6)]
+    assert len({plan.name for plan in plans}) == 1670
+    assert [plan.day for plan in plans] == [turn // 167 for turn in range(1670)]
+    starts = [plan.true_ns for plan in plans]
+    assert starts == sorted(starts) and min(np.diff(starts)) > 200 * SECOND
+    assert plans[167].name.endswith("-2026-03-03-1") and plans[166].name.endswith("-167")
+
+
 def test_rank_has_the_wrong_parameter_among_the_first(tmp_path):
     truth = generate(WorldSettings(), tmp_path, [1])
     (one,) = truth["missions"]

@@ -47,7 +47,8 @@ _FAR = {Kind.WANDER: 2.8, Kind.STEADY: 9.0}
 _SEEN_ELSEWHERE = 0.9
 _CLOCK_OFF = timedelta(days=-41, hours=-3)
 _FIRST_DAY = datetime(2026, 3, 2, 6, tzinfo=timezone.utc)
-_BETWEEN = timedelta(minutes=40)
+_OF_A_DAY = timedelta(hours=14)
+_USUAL_IN_A_DAY = 21
 _OBSERVERS = ("anna", "ben")
 _SEEN, _SEEN_TWICE, _ABSENT = 0.4, 0.25, 0.1
 _ALARM_BAD, _ALARM_GOOD = 0.2, 0.06
@@ -238,14 +239,14 @@ class World:
         settings = self.settings
         robot, turn = number % settings.robots, number // settings.robots
         turns = -(-settings.missions // settings.robots)
-        day = turn * settings.days // max(turns, settings.days)
-        first = next(
-            t for t in range(turn + 1) if t * settings.days // max(turns, settings.days) == day
-        )
+        steps = max(turns, settings.days)
+        day = turn * settings.days // steps
+        number_of_day = turn - -(-day * steps // settings.days)
+        between = _OF_A_DAY / max(_USUAL_IN_A_DAY, -(-steps // settings.days))
         rng = np.random.default_rng([settings.seed, 2, number])
-        began = _FIRST_DAY + timedelta(days=day) + (turn - first) * _BETWEEN
-        began += timedelta(seconds=int(rng.integers(600)))
-        name = f"{self.robot_name(robot)}-{began:%Y-%m-%d}-{turn - first + 1}"
+        first_of_day = _FIRST_DAY + timedelta(days=day)
+        began = first_of_day + (number_of_day + int(rng.integers(600)) / 2400) * between
+        name = f"{self.robot_name(robot)}-{first_of_day:%Y-%m-%d}-{number_of_day + 1}"
         wrong = self._drawn_wrong(robot, rng) if rng.random() < settings.bad else None
         values = self._values(robot)
         decoy = self._decoy(values, wrong, rng)
