@@ -337,6 +337,12 @@ def test_a_question_has_ten_bad_and_fifty_good_missions_of_all_robots():
     assert asked == list(questions(flown()[::-1], draws=2, shapes=["mixed"]))
 
 
+def test_by_marks_the_same_missions_are_asked_about():
+    (said,) = questions(flown(), 1, ["mixed"])
+    (marked,) = questions(flown(), 1, ["by-marks"])
+    assert marked == replace(said, shape="by-marks")
+
+
 def test_a_question_may_have_other_numbers_of_missions():
     (one,) = questions(flown(goods=9, marked=4), 1, ["mixed"], 4, 9)
     assert (len(one.bad), len(one.good)) == (4, 9)
