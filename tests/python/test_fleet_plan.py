@@ -9,15 +9,17 @@ from dataclasses import replace
 import pyarrow as pa
 import pytest
 from click.testing import CliRunner
-from mission_samples import events
+from mission_samples import comparison, events, static_info
 from study_flights import made, treatment
 
 from pytpc.base.columns import write_table
 from pytpc.base.errors import InputError
 from pytpc.cli.main import main
+from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording, load_recording, save_recording
 from pytpc.recording.parameter_change import Change
 from pytpc_evaluation.demo.demo_examples import EXAMPLES, WATER_SAMPLER
+from pytpc_evaluation.study import fleet_judge
 from pytpc_evaluation.study.case import Verdict
 from pytpc_evaluation.study.changes import harmless_changes
 from pytpc_evaluation.study.data import UserMark
@@ -33,6 +35,7 @@ from pytpc_evaluation.study.fleet_judge import (
     AloneVerdict,
     FleetVerdict,
     alone_in_questions,
+    judge_alone,
     judge_fleets,
     judged,
     load_verdicts,
@@ -334,6 +337,12 @@ def test_a_question_has_ten_bad_and_fifty_good_missions_of_all_robots():
     assert asked == list(questions(flown()[::-1], draws=2, shapes=["mixed"]))
 
 
+def test_by_marks_the_same_missions_are_asked_about():
+    (said,) = questions(flown(), 1, ["mixed"])
+    (marked,) = questions(flown(), 1, ["by-marks"])
+    assert marked == replace(said, shape="by-marks")
+
+
 def test_a_question_may_have_other_numbers_of_missions():
     (one,) = questions(flown(goods=9, marked=4), 1, ["mixed"], 4, 9)
     assert (len(one.bad), len(one.good)) == (4, 9)
@@ -416,6 +425,42 @@ def test_a_question_is_asked_again_only_if_a_mission_has_changed(tmp_path):
     judge_fleets(tmp_path, [replace(QUESTION, bad=("m/1",))], ranks)
     judge_fleets(tmp_path, [QUESTION], ranks)
     assert [len(one.bad) for one in asked] == [2, 2, 2, 2, 1]
+
+
+def test_each_bad_mission_is_ranked_once_beside_good_ones_of_its_question(tmp_path, monkeypatch):
+    static = tmp_path / "systems/pump/static.json"
+    static.parent.mkdir(parents=True)
+    static_info(comparison(1, "~b"), comparison(2, "~a")).save(static)
+    for name in ("1", "2", "3"):
+        (tmp_path / "m" / name).mkdir(parents=True)
+        marks = [Mark(5 * 10**8, "I", "user1")] if name != "3" else []
+        recording = Recording(name, EVENTS, tuple(marks), 0, 10**9)
+        save_recording(recording, tmp_path / "m" / name)
+    seen = []
+
+    def ranks(case):
+        seen.append((case.recording.name, [run.name for run in case.good]))
+        return Verdict(("~a", "~b"))
+
+    monkeypatch.setattr(fleet_judge, "ALONE", ("tpc",))
+    monkeypatch.setattr(fleet_judge, "METHODS", {"tpc": ranks})
+    found = judge_alone(tmp_path, [QUESTION, replace(QUESTION, draw=1)])
+    assert [(one.folder, one.method, one.first, one.third) for one in found] == [
+        ("m/1", "tpc", 0.0, 1.0),
+        ("m/2", "tpc", 0.0, 1.0),
+    ]
+    assert seen == [("1", ["3"]), ("2", ["3"])]
+    assert judge_alone(tmp_path, [QUESTION]) == found
+    assert len(seen) == 2
+    # Another build has all ranked again; what cannot be read is told, and the others are kept.
+    static_info(comparison(1, "~b"), comparison(3, "~a")).save(static)
+    (tmp_path / "m/1/marks.json").write_text("[")
+    with pytest.raises(InputError, match=r"m/1/marks\.json"):
+        judge_alone(tmp_path, [QUESTION])
+    assert seen[2:] == [("2", ["3"])]
+    save_recording(Recording("1", EVENTS, (Mark(5 * 10**8, "I"),), 0, 10**9), tmp_path / "m/1")
+    judge_alone(tmp_path, [QUESTION])
+    assert seen[3:] == [("1", ["3"])]
 
 
 def verdict(treatment, draw, first, method="fleet", **other):

@@ -34,7 +34,16 @@ from pytpc_evaluation.study.fleet_judge import (
     judge_fleets,
 )
 from pytpc_evaluation.study.fleet_plan import all_fleet_flights
-from pytpc_evaluation.study.fleet_questions import BAD, DRAWS, GOOD, SHAPES, Shape, questions
+from pytpc_evaluation.study.fleet_questions import (
+    ASKED,
+    BAD,
+    DRAWS,
+    GOOD,
+    SHAPES,
+    FleetQuestion,
+    Shape,
+    questions,
+)
 from pytpc_evaluation.study.plan import FlightSelection, check_treatments
 from pytpc_evaluation.study.report.fleets import fleet_tables
 from pytpc_evaluation.study.resume import alone_with_results
@@ -149,7 +158,8 @@ def show_command(*, out: Path, as_json: bool) -> None:
     "shapes",
     type=click.Choice(list(SHAPES)),
     multiple=True,
-    help="Ask only these: bad missions of all robots, or of one; may be repeated.",
+    help="Ask only these: bad missions of all robots, of one, or by the marks alone; may be"
+    " repeated.  [default: mixed, one-robot]",
 )
 @click.option(
     "--draws",
@@ -199,17 +209,18 @@ def judge_command(
     from pytpc_evaluation.study.fleet_product import FleetRanker, add_flown  # noqa: PLC0415
 
     rows = load_rows(out)
-    every = questions(rows, draws, shapes or SHAPES, bad, good)
+    every = questions(rows, draws, shapes or ASKED, bad, good)
     asked = [one for one in every if one.half in CHOSEN[half]]
     if not asked:
         raise InputError("too few missions are flown; fly on with `pytpc study fleet fly`", out)
     with alone_with_results(out), engine(None, jobs) as workers:
-        wanted = {folder for one in asked for folder in (*one.bad, *one.good)}
         with progress("adding missions") as advance:
-            own = [row for row in rows if row["folder"] in wanted]
-            places = add_flown(out, own, workers, advance)
+            said, marked = (
+                add_flown(out, _rows_of(rows, asked, by_marks), workers, advance, by_marks=by_marks)
+                for by_marks in (False, True)
+            )
         with progress("ranking fleets") as advance:
-            ranker = FleetRanker(places, workers)
+            ranker = FleetRanker(workers, said, marked)
             verdicts = judge_fleets(out, asked, ranker, advance, again=again)
         if alone:
             with progress("ranking single missions") as advance:
@@ -221,6 +232,15 @@ def judge_command(
     for table in fleet_tables(verdicts):
         click.echo(f"**{table.title}:**\n\n{as_markdown(table)}")
     say(f"{many(len(asked), 'question')}: {out / RESULTS_FILE}")
+
+
+def _rows_of(
+    rows: Sequence[dict[str, Any]], asked: Sequence[FleetQuestion], by_marks: bool
+) -> list[dict[str, Any]]:
+    """The rows of the missions that questions of a shape ``by-marks``, or of others, are about."""
+    own = [one for one in asked if (one.shape == "by-marks") == by_marks]
+    folders = {folder for one in own for folder in (*one.bad, *one.good)}
+    return [row for row in rows if row["folder"] in folders]
 
 
 def _show(rows: Sequence[dict[str, Any]], out: Path, *, as_json: bool) -> None:

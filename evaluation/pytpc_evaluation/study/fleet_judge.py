@@ -20,13 +20,15 @@ import pyarrow as pa
 from pytpc.api.wired_robot import with_wiring
 from pytpc.base.columns import read_table, write_table
 from pytpc.base.errors import TpcError
+from pytpc.base.paths import MERGED_FILE
 from pytpc.base.signals import signals_end
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.diagnosis.thinned import thinned
-from pytpc.recording.mission import load_recording
+from pytpc.recording.graph_file import GRAPH_FILE
+from pytpc.recording.mission import EVENTS_FILE, MARKS_FILE, SUMMARIES_FILE, load_recording
 from pytpc.static.static_info import StaticInfo
+from pytpc.values.origins import ORIGINS_FILE, PARAMS_FILE
 from pytpc_evaluation.study.case import Case, Verdict
-from pytpc_evaluation.study.fleet_plan import GOOD as PLANNED_GOOD
 from pytpc_evaluation.study.fleet_questions import FleetQuestion
 from pytpc_evaluation.study.judge import position
 from pytpc_evaluation.study.methods import METHODS
@@ -43,6 +45,7 @@ Progress = Callable[[int, int], None]
 ALONE = ("tpc+2-runs", "tpc", "importance", "thesis")
 """The methods of the study that see one mission each."""
 _GOOD_RUNS = 2
+_RANKED = (EVENTS_FILE, SUMMARIES_FILE, MARKS_FILE, PARAMS_FILE, ORIGINS_FILE, GRAPH_FILE)
 RESULTS_FILE = Path("results") / "fleet-verdicts.parquet"
 ALONE_FILE = Path("results") / "fleet-alone.parquet"
 _VERDICTS = pa.schema(
@@ -144,20 +147,18 @@ def judge_fleets(
         by_question.setdefault(_place(one), []).append(one)
     code, digests = method_digest(rank_of), _Digests(out)
     found: list[FleetVerdict] = []
-    try:
-        for number, question in enumerate(asked, start=1):
-            digest = digest_of([code, *map(digests.of, (*question.bad, *question.good))])
-            before = by_question.get(_place(question), [])
-            if again or not before or any(one.digest != digest for one in before):
-                verdicts = rank_of(question, out).items()
-                before = [judged(question, name, one, digest) for name, one in verdicts]
-                by_question[_place(question)] = before
-            found += before
-            if on_progress is not None:
-                on_progress(number, len(asked))
-    finally:
-        every = [asdict(one) for rows in by_question.values() for one in rows]
-        _save(every, _VERDICTS, path)
+    for number, question in enumerate(asked, start=1):
+        digest = digest_of([code, digests.of_question(question)])
+        own = by_question.get(_place(question), [])
+        if again or not own or any(one.digest != digest for one in own):
+            verdicts = rank_of(question, out).items()
+            own = [judged(question, name, one, digest) for name, one in verdicts]
+            by_question[_place(question)] = own
+            every = [asdict(one) for rows in by_question.values() for one in rows]
+            _save(every, _VERDICTS, path)
+        found += own
+        if on_progress is not None:
+            on_progress(number, len(asked))
     return found
 
 
@@ -221,7 +222,7 @@ def judge_alone(
 ) -> list[AloneVerdict]:
     """Rank each bad mission of the questions by itself, and save the verdicts.
 
-    Methods that know good runs get two of the system, which are drawn for each mission.
+    Methods that know good runs get two good missions of the question, drawn for each bad one.
 
     Args:
         out: the folder of fleets.
@@ -241,8 +242,8 @@ def judge_alone(
         for folder in question.bad:
             if folder in tasks:
                 continue
-            good = _drawn_good(out, folder)
-            own = digest_of([digests.of(one) for one in (folder, *good)])
+            good = _drawn_good(question, folder)
+            own = digest_of([digests.of_build(question), *map(digests.of, (folder, *good))])
             need = {name: digest_of([own, code[name]]) for name in ALONE}
             wanted |= {(folder, name) for name in ALONE}
             for name, digest in list(need.items()):
@@ -292,7 +293,7 @@ def _all_alone(tasks: Sequence[_Alone], jobs: int) -> Iterator[list[AloneVerdict
 
 def _ranked_alone(task: _Alone) -> list[AloneVerdict] | TpcError:
     try:
-        static = StaticInfo.load(task.out / "systems" / task.question.system / "static.json")
+        static = StaticInfo.load(static_file(task.out, task.question))
         mission = task.out / task.folder
         good = [replace(load_recording(task.out / one), marks=()) for one in task.good]
         case = Case(
@@ -312,20 +313,18 @@ def _ranked_alone(task: _Alone) -> list[AloneVerdict] | TpcError:
     return found
 
 
-def _drawn_good(out: Path, folder: str) -> tuple[str, ...]:
-    """The good runs beside a mission, drawn for it from the first of its system."""
-    system = Path(folder).parts[1]
-    runs = [
-        path.relative_to(out).as_posix()
-        for number in range(1, PLANNED_GOOD + 1)
-        for path in (out / "missions" / system).glob(f"*/mission-{number:04}")
-    ]
-    runs.sort(key=lambda run: sha256(f"{folder} beside {run}".encode()).hexdigest())
-    return tuple(runs[:_GOOD_RUNS])
+def _drawn_good(question: FleetQuestion, folder: str) -> tuple[str, ...]:
+    """The good runs beside a bad mission, drawn for it from those of a question."""
+    drawn = sorted(question.good, key=lambda run: _hash(f"{folder} beside {run}"))
+    return tuple(drawn[:_GOOD_RUNS])
+
+
+def _hash(text: str) -> str:
+    return sha256(text.encode()).hexdigest()
 
 
 class _Digests:
-    """Of missions, each read once."""
+    """Of what is ranked; each file is read once."""
 
     def __init__(self, out: Path) -> None:
         self._out = out
@@ -334,9 +333,26 @@ class _Digests:
     def of(self, folder: str) -> str:
         """Of a mission's recording and marks."""
         if folder not in self._known:
-            files = ("events.parquet", "marks.json", "params.yaml", "graph.json")
-            self._known[folder] = digest_of([contents(self._out / folder / f) for f in files])
+            files = [self._out / folder / name for name in _RANKED]
+            self._known[folder] = digest_of([*map(contents, files)])
         return self._known[folder]
+
+    def of_build(self, question: FleetQuestion) -> str:
+        """Of the static information of a question's robots."""
+        path = static_file(self._out, question)
+        if str(path) not in self._known:
+            self._known[str(path)] = contents(path)
+        return self._known[str(path)]
+
+    def of_question(self, question: FleetQuestion) -> str:
+        """Of its missions and its build."""
+        missions = map(self.of, (*question.bad, *question.good))
+        return digest_of([self.of_build(question), *missions])
+
+
+def static_file(out: Path, question: FleetQuestion) -> Path:
+    """The static information of a question's robots, in the folder of fleets."""
+    return out / "systems" / question.system / MERGED_FILE
 
 
 def _of(question: FleetQuestion) -> tuple[str, str, str, str, str, int]:

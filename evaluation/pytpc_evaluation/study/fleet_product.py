@@ -1,7 +1,8 @@
 """Has the product rank the missions of a question, as ``pytpc fleet add`` and ``rank`` do.
 
-All missions of a system are added once, to ``sets/SYSTEM`` in the folder of fleets. The data set of
-a question has links to the files of its missions alone, so that nothing else can be seen.
+All missions of a system are added once, to ``sets/SYSTEM`` in the folder of fleets, and as their
+marks alone say, to ``sets/SYSTEM-by-marks``. The data set of a question has links to the files of
+its missions alone, so that nothing else can be seen.
 """
 
 from __future__ import annotations
@@ -33,10 +34,12 @@ def add_flown(
     rows: Iterable[Mapping[str, Any]],
     engine: Engine,
     on_progress: Progress | None = None,
+    *,
+    by_marks: bool = False,
 ) -> dict[str, Place]:
     """Add flown missions to the data sets of their systems, unless they are there.
 
-    Those without a wrong parameter are said to be good, the others bad.
+    Those without a wrong parameter are said to be good, the others bad, unless it is ``by_marks``.
 
     Args:
         out: the folder of fleets.
@@ -50,10 +53,11 @@ def add_flown(
     Raises:
         TpcError: a mission cannot be added, or a data set not written.
     """
-    groups: dict[tuple[str, Said], list[Mapping[str, Any]]] = {}
+    groups: dict[tuple[str, Said | None], list[Mapping[str, Any]]] = {}
     for row in rows:
         if row["state"] == "done":
-            said: Said = "good" if row["parameter"] is None else "bad"
+            right: Said = "good" if row["parameter"] is None else "bad"
+            said = None if by_marks else right
             groups.setdefault((row["system"], said), []).append(row)
     whole, before = sum(map(len, groups.values())), 0
     places = {}
@@ -66,7 +70,7 @@ def add_flown(
                 on_progress(before + done, whole)
 
         for row, added in zip(
-            own, add(_fleet(out, system), given, options, engine, told), strict=True
+            own, add(_fleet(out, system, by_marks), given, options, engine, told), strict=True
         ):
             if added.place is None:
                 raise TpcError(added.why, added.path)
@@ -77,15 +81,18 @@ def add_flown(
 
 @dataclass(frozen=True)
 class FleetRanker:
-    """Ranks with the product's API; ``places`` are from ``add_flown``."""
+    """Ranks with the product's API; the places are from ``add_flown``, without and by marks."""
 
-    places: Mapping[str, Place]
     engine: Engine
+    places: Mapping[str, Place]
+    by_marks: Mapping[str, Place]
 
     def __call__(self, question: FleetQuestion, out: Path) -> dict[str, Verdict]:
         """Rank the missions of a question."""
-        places = [self.places[folder] for folder in (*question.bad, *question.good)]
-        whole = _fleet(out, question.system)
+        by_marks = question.shape == "by-marks"
+        known = self.by_marks if by_marks else self.places
+        places = [known[folder] for folder in (*question.bad, *question.good)]
+        whole = _fleet(out, question.system, by_marks)
         with tempfile.TemporaryDirectory(prefix=".question-", dir=out / _SETS) as folder:
             link_missions(Path(whole.url), places, Path(folder))
             found = rank(Fleet(folder), self.engine)
@@ -142,5 +149,5 @@ def _by(scores: Mapping[str, float]) -> Verdict:
     return Verdict(tuple(order), scores=tuple(found[name] for name in order))
 
 
-def _fleet(out: Path, system: str) -> Fleet:
-    return Fleet(str((out / _SETS / system).absolute()))
+def _fleet(out: Path, system: str, by_marks: bool) -> Fleet:
+    return Fleet(str((out / _SETS / f"{system}{'-by-marks' if by_marks else ''}").absolute()))

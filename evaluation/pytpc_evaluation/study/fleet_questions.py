@@ -2,7 +2,8 @@
 
 Whether a mission went right is what its owner says: one with a wrong parameter went wrong if an
 error was seen and marked, and a clean one went right if none was seen, whatever false alarms there
-were. All others are left out.
+were. All others are left out. In questions of the shape ``by-marks`` nobody says so: a mission with
+a mark counts as bad, also if that was a false alarm.
 """
 
 from __future__ import annotations
@@ -13,9 +14,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
-Shape = Literal["mixed", "one-robot"]
+Shape = Literal["mixed", "one-robot", "by-marks"]
 SHAPES: tuple[Shape, ...] = get_args(Shape)
-"""Bad missions of all three robots, or of one; the good ones are of all three."""
+"""Bad missions of all three robots, or of one; the good ones are of all three. ``by-marks`` ones
+have the missions of ``mixed`` ones."""
+ASKED: tuple[Shape, ...] = ("mixed", "one-robot")
+"""Those that are asked if nothing is said."""
 BAD = 10
 GOOD = 50
 _MARKED = 0.8
@@ -46,7 +50,7 @@ class FleetQuestion:
 def questions(
     rows: Iterable[Mapping[str, Any]],
     draws: int = DRAWS,
-    shapes: Sequence[Shape] = SHAPES,
+    shapes: Sequence[Shape] = ASKED,
     bad_count: int = BAD,
     good_count: int = GOOD,
 ) -> Iterator[FleetQuestion]:
@@ -73,11 +77,12 @@ def questions(
         if len(good[system]) < good_count:
             continue
         for shape in shapes:
-            among = marked if shape == "mixed" else _of_one_robot(marked)
+            among = _of_one_robot(marked) if shape == "one-robot" else marked
             if len(among) < _MARKED * bad_count:
                 continue
             for draw in range(draws):
-                dice = random.Random(f"fleet {system} {treatment} {shape} {draw}")
+                drawn = "one-robot" if shape == "one-robot" else "mixed"
+                dice = random.Random(f"fleet {system} {treatment} {drawn} {draw}")
                 yield FleetQuestion(
                     system=system,
                     treatment=treatment,

@@ -28,6 +28,7 @@ TARGET = 0.9
 _TITLES = {
     "mixed": "Bad missions of all three robots",
     "one-robot": "Bad missions of one robot, good ones of all three",
+    "by-marks": "Bad missions of all three robots, and all that have a false alarm",
 }
 _PARTS: tuple[tuple[str, Callable[[FleetVerdict], bool]], ...] = (
     ("all", lambda _: True),
