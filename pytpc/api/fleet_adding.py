@@ -165,7 +165,8 @@ def add(
         TpcError: the data set cannot be written.
     """
     fleet.begin()
-    known = {} if options.again else _known(fleet, engine)
+    before = fleet.places()
+    known = {} if options.again else _known(fleet, before, engine)
     jobs = []
     found: dict[int, Added] = {}
     for number, one in enumerate(given):
@@ -176,13 +177,15 @@ def add(
         else:
             jobs.append((number, _Job(fleet, one, options, stamp)))
     made = engine.map(_added, [job for _, job in jobs], on_progress)
+    # A task may be done twice, and finds its own mission there then.
+    there = set(before)
+    made = [one._replace(is_new=one.place is not None and one.place not in there) for one in made]
     found |= dict(zip((number for number, _ in jobs), made, strict=True))
     return [found[number] for number in range(len(given))]
 
 
-def _known(fleet: Fleet, engine: Engine) -> dict[tuple[str, str], Place]:
+def _known(fleet: Fleet, places: Sequence[Place], engine: Engine) -> dict[tuple[str, str], Place]:
     """The missions that are there, by robot and stamp."""
-    places = fleet.places()
     stamps = engine.map(_stamp, [(fleet, place) for place in places])
     return {
         (place.robot, stamp): place
@@ -280,9 +283,8 @@ def _added_anew(job: _Job) -> Added:
     }
     fleet.put_build(build, content)
     place = Place(robot, day, mission_id(_name_of(path), comparisons))
-    is_new = not fleet.has(place)
     size = fleet.write(place, tables)
-    return Added(path, place, is_new, evaluations, size, notes)
+    return Added(path, place, True, evaluations, size, notes)
 
 
 def _static_for(path: Path, recording: Recording, given: Path | None) -> tuple[StaticInfo, bytes]:
