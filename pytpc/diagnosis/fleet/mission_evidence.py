@@ -43,7 +43,6 @@ ALIKE = 0.25
 """The correlation of the errors of two missions' diagnoses. However many they are, they count as at
 most four: by reason, as a diagnosis that is wrong is mostly wrong about what follows the error."""
 
-
 APART = 0.5
 """The part of "none of them" that is several causes, if there are many missions."""
 

@@ -1,6 +1,6 @@
 """Which parameter makes missions of a fleet go wrong, or none of them.
 
-The score of a parameter, in log odds against "none of them", is
+The score of a parameter, in log odds, is
 
     prior + diagnoses + VALUES * values + behaviour
 

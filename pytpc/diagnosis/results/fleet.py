@@ -42,10 +42,11 @@ class ValueInMissions:
 
 @dataclass(frozen=True, slots=True)
 class FleetEvidence:
-    """What speaks for a parameter, in log odds against "none of them".
+    """What speaks for a parameter, in log odds; the sum is its score.
 
     ``diagnoses`` of the bad missions, its ``values``, and the ``behaviour`` of its comparisons, as
-    they count; ``prior`` is what is known before.
+    they count; ``prior`` is what is known before. "None of them" has the score 0, or what the
+    diagnoses say of it.
     """
 
     prior: float
