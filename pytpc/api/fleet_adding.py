@@ -25,7 +25,7 @@ from pytpc.base.errors import InputError, TpcError
 from pytpc.fleet.store import Fleet, Place
 from pytpc.fleet.tables import MISSIONS, Table
 from pytpc.ingest.reading import holds_mission, read
-from pytpc.recording.mission import RUN_FILE, Recording, is_converted, is_ros2_folder, read_run
+from pytpc.recording.mission import RUN_FILE, Recording, is_converted, is_ros2_folder
 from pytpc.static.static_info import StaticInfo
 
 Keep = Literal["edges", "full"]
@@ -319,8 +319,7 @@ def _day_of(recording: Recording, path: Path, given: str | None) -> tuple[str, t
     """The day of a mission, and notes about its clock: by the reports, or else by the files."""
     if given is not None:
         return given, ()
-    written_ns = int(read_run(path).get("began_ns") or 0) if path.is_dir() else 0
-    written_ns = written_ns or min(
+    written_ns = min(
         (file.stat().st_mtime_ns for file in (_files_in(path) if path.is_dir() else [path])),
         default=0,
     )
