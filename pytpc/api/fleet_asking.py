@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pyarrow as pa
 
@@ -313,6 +315,37 @@ class _Search(NamedTuple):
     place: Place
     build: str
     query: TurnQuery
+
+
+_KEY = re.compile(r"[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}(#\d+)?")
+_PLACE = re.compile(r".*:\d+|.*\.(?:py|c|cc|cpp|cxx|h|hh|hpp|hxx|ipp|tpp)")
+
+
+def turn_query(
+    where: str,
+    *,
+    within: float | None = None,
+    low: float = -math.inf,
+    high: float = math.inf,
+    had: tuple[tuple[str, object], ...] = (),
+) -> TurnQuery:
+    """What ``find`` looks for.
+
+    Args:
+        where: a parameter, a key, a file, or ``file:line``.
+        within: the largest margin.
+        low: the smallest compared value.
+        high: the largest one.
+        had: parameters and the values that they must have had then.
+    """
+    named: dict[str, Any] = {"within": within, "low": low, "high": high, "had": had}
+    if _KEY.fullmatch(where):
+        return TurnQuery(key=where, **named)
+    return (
+        TurnQuery(place=where, **named)
+        if _PLACE.fullmatch(where)
+        else TurnQuery(parameter=where, **named)
+    )
 
 
 def find(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 import shlex
 import sys
 from collections.abc import Callable, Sequence
@@ -38,8 +37,6 @@ from pytpc.present.fleet_tables import print_drifts, print_found, print_outliers
 
 Answer = TypeVar("Answer")
 Command = TypeVar("Command", bound=Callable[..., object])
-_KEY = re.compile(r"[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}(#\d+)?")
-_PLACE = re.compile(r".*:\d+|.*\.(?:py|c|cc|cpp|cxx|h|hh|hpp|hxx|ipp|tpp)")
 
 PAGE = click.option("--page", type=PATH, metavar="FILE", help="Write a page (HTML) to this file.")
 TOP = click.option(
@@ -202,23 +199,12 @@ def find_command(given: _FindArguments) -> None:
 
     WHERE is a parameter, a place (FILE or FILE:LINE) or a key.
     """
-    query = _query(given)
+    query = asking.turn_query(
+        given.where, within=given.margin, low=given.low, high=given.high, had=given.had
+    )
     with engine(given.cluster, given.workers) as own, progress("looking at missions") as advance:
         found = asking.find(given.store, own, query, given.selection, advance)
     FOUND.show(found.found, given, found.unread)
-
-
-def _query(given: _FindArguments) -> asking.TurnQuery:
-    named: dict[str, str] = {}
-    if _KEY.fullmatch(given.where):
-        named["key"] = given.where
-    elif _PLACE.fullmatch(given.where):
-        named["place"] = given.where
-    else:
-        named["parameter"] = given.where
-    return asking.TurnQuery(
-        **named, within=given.margin, low=given.low, high=given.high, had=given.had
-    )
 
 
 @dataclass(frozen=True)
