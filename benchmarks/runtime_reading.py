@@ -13,7 +13,6 @@ import argparse
 import json
 import os
 import statistics
-import struct
 import subprocess
 import sys
 import tempfile
@@ -25,9 +24,16 @@ import numpy as np
 from figures import figure
 
 from pytpc.ingest.binary import _TpcReader
-from pytpc.ingest.binary_chunks import RECORD
 from pytpc.ingest.gathering import Gathering
 from pytpc.python_runtime import log_layout as layout
+from pytpc_evaluation.report_file import (
+    header,
+    reports,
+    site,
+    sync,
+    system_chunks,
+    thread_chunks,
+)
 
 ROOT = Path(__file__).parents[1]
 TOPIC = "runtime-cost"
@@ -90,33 +96,25 @@ def values(count: int, first: int = 0) -> tuple[np.ndarray, np.ndarray]:
 
 def write_tpc(path: Path, chunks: int, threads: int = 1) -> int:
     """A binary file of so many chunks of reports; how many reports."""
-    head = layout.MAGIC + struct.pack("<IIII", 4096, 32, 65536, 1)
-    head += struct.pack("<qqIIQII", 0, BEGIN_NS, 1, 0, 0, 0, 0) + b"/uav"
-    system = b""
-    for number, key in enumerate(KEYS, start=1):
-        system += struct.pack("<IIII16s", 2, number, len(key), 0, key[:16].encode())
-        system += key[16:].encode().ljust(32, b"\0")
-    seconds = chunks * layout.RECORDS_OF_CHUNK * STEP_NS // 10**9 + 2
-    # Real time gains a microsecond a second; a sync record a second, as many as fit.
-    for second in range(min(seconds, 1900)):
+    system = [site(number, key) for number, key in enumerate(KEYS, start=1)]
+    for second in range(chunks * layout.RECORDS_OF_CHUNK * STEP_NS // 10**9 + 2):
         at = second * 10**9
-        system += struct.pack("<IIqqq", 3, 0, at, BEGIN_NS + at + 1000 * second, 0)
+        # Real time gains a microsecond a second.
+        system.append(sync(at, BEGIN_NS + at + 1000 * second))
+    cmp, thresh = values(layout.RECORDS_OF_CHUNK)
+    records = reports(cmp.size, cmp > thresh)
+    records["cmp"], records["thresh"] = cmp, thresh
+    records["site"] = np.arange(records.size) % len(KEYS) + 1
     with path.open("wb") as stream:
-        stream.write(head.ljust(4096, b"\0"))
-        stream.write((struct.pack("<IIQQ40x", 2, 0, 0, 0) + system).ljust(65536, b"\0"))
-        records = np.zeros(layout.RECORDS_OF_CHUNK, RECORD)
-        records["cmp"], records["thresh"] = values(layout.RECORDS_OF_CHUNK)
-        records["site"] = np.arange(layout.RECORDS_OF_CHUNK) % len(KEYS) + 1
-        records["what"] = 1 | (records["cmp"] > 0.5).astype(np.uint32) * 0x300
+        stream.write(header("/uav", real_ns=BEGIN_NS))
+        stream.write(system_chunks(system))
         # Threads take turns; each chunk of one covers the time of one chunk of all others.
         for chunk in range(chunks):
             turn, thread = divmod(chunk, threads)
-            first = turn * layout.RECORDS_OF_CHUNK
-            steady = (
-                np.arange(first, first + layout.RECORDS_OF_CHUNK) * threads + thread
-            ) * STEP_NS
-            records["steady"] = steady
-            stream.write(struct.pack("<IIQQ40x", 1, thread + 1, first, 1) + records.tobytes())
+            first = turn * records.size
+            steady = np.arange(first, first + records.size) * threads + thread
+            records["steady"] = steady * STEP_NS
+            stream.write(thread_chunks(thread + 1, records, first).data)
     return chunks * layout.RECORDS_OF_CHUNK
 
 

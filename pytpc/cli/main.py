@@ -73,6 +73,7 @@ _GROUPED = {
     RECORDINGS: {
         "marks": ("marks_commands", "List the marks of a recording, or add and remove some."),
         "learn": ("learn_commands", "Learn what is normal for a robot from its good runs."),
+        "fleet": ("fleet_commands", "Keep the missions of many robots, and ask them together."),
         "convert": ("convert_commands", "Convert bags, binary files, logs or CSV to Parquet."),
         "sink": ("graph_commands", "Show or change where running nodes report to."),
         "relay": ("graph_commands", "Forward reports from /rosout to /threshold_information."),

@@ -183,6 +183,12 @@ def _near_misses(margin: Floats, res: Bools, near: float) -> int:
     return found + (inside and not turned)
 
 
+def _median(values: Floats) -> float:
+    """That of at least one finite value; numpy's own takes ten times as long for few."""
+    ordered = np.sort(values)
+    return float(ordered[(ordered.size - 1) // 2] + ordered[ordered.size // 2]) / 2.0
+
+
 def _drift(stream: ResultStream, margin: Floats) -> Drift | None:
     known = np.isfinite(margin)
     # Pauses do not count: what happened in them is not known.
@@ -192,7 +198,7 @@ def _drift(stream: ResultStream, margin: Floats) -> Drift | None:
         return None
     parts = np.minimum((PARTS * clock / clock[-1]).astype(np.int64), PARTS - 1)
     split = [(clock[parts == part], margin[parts == part]) for part in np.unique(parts)]
-    times, medians = np.array([[np.median(one) for one in both] for both in split]).T
+    times, medians = np.array([[_median(one) for one in both] for both in split]).T
     found = trend_of(times, medians)
     if found is None or not found.is_clear:
         return None

@@ -7,8 +7,9 @@ for few points.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
-from math import erfc, factorial, sqrt
+from math import ceil, erfc, factorial, floor, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +20,7 @@ CHANCE = 0.01
 """How likely a slope is to be seen where there is none."""
 
 _EXACT = 40
+_WIDTH = 1.96
 
 
 class Trend(NamedTuple):
@@ -40,13 +42,74 @@ def trend_of(times: Floats, values: Floats) -> Trend | None:
         times: float64[n], rising.
         values: float64[n], finite.
     """
-    first, second = np.triu_indices(times.size, 1)
-    if not first.size:
+    if times.size < 2:
         return None
-    steps = values[second] - values[first]
-    slope = float(np.median(steps / (times[second] - times[first])))
+    steps, slopes = _pairs_of(times, values)
     order = int(np.sign(steps).sum())
-    return Trend(slope, _chance(order, values))
+    return Trend(float(np.median(slopes)), _chance(order, values))
+
+
+class Line(NamedTuple):
+    """A line through a series: ``slope`` per unit of the times, and the value at time 0."""
+
+    slope: float
+    start: float
+
+    def at(self, time: float) -> float:
+        """The value at a time."""
+        return self.start + self.slope * time
+
+    @property
+    def zero(self) -> float | None:
+        """When it falls to 0; None if it does not fall."""
+        return -self.start / self.slope if self.slope < 0 else None
+
+
+def joint_trend(series: Sequence[tuple[Floats, Floats]]) -> Trend | None:
+    """The trend that several series share; None if each has fewer than two points.
+
+    Only points of one series are compared, so that their levels and times do not matter: Kendall's
+    sums are added up, and so are their variances (van Belle and Hughes 1984).
+
+    Args:
+        series: times, rising, and finite values, of each.
+    """
+    if len(series) == 1:
+        return trend_of(*series[0])
+    both = [_pairs_of(*one) for one in series]
+    slopes = np.concatenate([slopes for _, slopes in both]) if both else np.empty(0)
+    if not slopes.size:
+        return None
+    order = sum(int(np.sign(steps).sum()) for steps, _ in both)
+    return Trend(float(np.median(slopes)), _by_normal(order, _spread(series)))
+
+
+def lines_of(series: Sequence[tuple[Floats, Floats]]) -> tuple[Line, Line, Line]:
+    """The line with the slope of `joint_trend`, and those with the ends of its 95 % interval.
+
+    The interval are two of the slopes of all pairs, by the normal distribution of Kendall's sum
+    (Sen 1968). Each line has the median distance 0 to the points of the median series.
+
+    Args:
+        series: as for `joint_trend`; one has at least two points.
+    """
+    slopes = np.sort(np.concatenate([_pairs_of(*one)[1] for one in series]))
+    off = _WIDTH * sqrt(max(0, _spread(series)) / 18.0)
+    low = max(0, floor((slopes.size - off) / 2.0) - 1)
+    high = min(slopes.size - 1, ceil((slopes.size + off) / 2.0))
+    chosen = (float(np.median(slopes)), float(slopes[low]), float(slopes[high]))
+    found = []
+    for slope in chosen:
+        levels = [float(np.median(values - slope * times)) for times, values in series]
+        found.append(Line(slope, float(np.median(levels))))
+    return found[0], found[1], found[2]
+
+
+def _pairs_of(times: Floats, values: Floats) -> tuple[Floats, Floats]:
+    """By how much the values of all pairs of points differ, and the slopes."""
+    first, second = np.triu_indices(times.size, 1)
+    steps = values[second] - values[first]
+    return steps, steps / (times[second] - times[first])
 
 
 def _chance(order: int, values: Floats) -> float:
@@ -59,7 +122,19 @@ def _chance(order: int, values: Floats) -> float:
         # The sum of signs of k pairs in the wrong order is `pairs` - 2 k.
         beyond = sum(ways[: (pairs - abs(order)) // 2 + 1])
         return min(1.0, 2.0 * beyond / factorial(count))
-    spread = _pairs(count) - sum(_pairs(int(tie)) for tie in ties)
+    return _by_normal(order, _spread([(values, values)]))
+
+
+def _spread(series: Sequence[tuple[Floats, Floats]]) -> int:
+    """18 times the variance of the sum of signs."""
+    spread = 0
+    for _, values in series:
+        _, ties = np.unique(values, return_counts=True)
+        spread += _pairs(values.size) - sum(_pairs(int(tie)) for tie in ties)
+    return spread
+
+
+def _by_normal(order: int, spread: int) -> float:
     if spread <= 0:
         return 1.0
     return erfc(max(0, abs(order) - 1) / sqrt(spread / 18.0) / sqrt(2.0))

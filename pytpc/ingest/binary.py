@@ -36,7 +36,7 @@ from pytpc.ingest.binary_system import (
     summary_rows,
     written_summaries,
 )
-from pytpc.ingest.condense import Condenser, hot_keys
+from pytpc.ingest.condense import Condenser, Extent, hot_keys
 from pytpc.ingest.gathering import Channel, Gathering, Progress
 from pytpc.ingest.spool import Rows
 from pytpc.python_runtime import log_layout as layout
@@ -285,7 +285,13 @@ class _TpcReader:
             self._condenser.add(block)
 
     def _made_condenser(self, threads: list[ThreadChunks]) -> Condenser:
-        """Condenses the comparisons that have most reports."""
+        """Condenses the comparisons that have most reports; all, if that is asked for."""
+        blocks = self._file.count // GROUP + len(threads)
+        asked = self._gathering.period_ns
+        if asked is not None:
+            every = np.ones(len(self._gathering.keys.codes), np.bool_)
+            extent = Extent(0.0, blocks, asked)
+            return Condenser(self._gathering, self._channel, self._node_code, every, extent)
         sites, times = self._file.some_sites(threads)
         keys = self._key_of_site.take(sites, mode="clip")
         # A thread whose first record was not written begins at 0.
@@ -295,8 +301,7 @@ class _TpcReader:
             self._channel,
             self._node_code,
             hot_keys(keys[keys >= 0], len(self._gathering.keys.codes), times),
-            seconds=(max(thread.last_steady for thread in threads) - first) / 1e9,
-            blocks=self._file.count // GROUP + len(threads),
+            Extent((max(thread.last_steady for thread in threads) - first) / 1e9, blocks),
         )
 
     # --- the rest

@@ -7,13 +7,18 @@ the score of type II is then that of all evaluations, but for the rounding of su
 
 from __future__ import annotations
 
-import numpy as np
-import numpy.typing as npt
+from dataclasses import replace
+from typing import NamedTuple
 
-from pytpc.base.columns import Bools, Floats, Int32s, Int64s, order_of
+import numpy as np
+
+from pytpc.base.columns import Bools, Floats, Int32s, Int64s, order_of, recode
 from pytpc.base.wording import many
-from pytpc.ingest.gathering import SUMMARY_ROW, Channel, Gathering, ReportColumns
+from pytpc.ingest.gathering import EVENT_ROW, SUMMARY_ROW, Channel, Gathering, ReportColumns
 from pytpc.ingest.spool import Rows
+from pytpc.recording.events import Events
+from pytpc.recording.mission import Recording
+from pytpc.recording.summaries import Summaries
 
 WINDOW_NS = 12 * 10**9
 """The window of type II. A question with another one gets estimates."""
@@ -27,6 +32,18 @@ _FAR = 1e-4
 _SUMS = ("count", "flops", "far", "odd", "diff_mean", "abs_mean")
 
 
+class Extent(NamedTuple):
+    """How long a recording is, about, and in how many blocks it comes.
+
+    ``period_ns`` is the length of a period; None: as short as the number of summaries allows, and
+    then the user is told why the reports are condensed.
+    """
+
+    seconds: float
+    blocks: int
+    period_ns: int | None = None
+
+
 class Condenser:
     """Takes the reports of one process, in order, and hands in what is kept of them.
 
@@ -35,28 +52,23 @@ class Condenser:
         channel: of the process.
         node: code of its node.
         hot: bool[n]: for each code of a key whether its reports are condensed.
-        seconds: how long the recording is, about; ``blocks`` in how many blocks it comes.
+        extent: of the recording.
     """
 
-    def __init__(  # noqa: PLR0913 - what is known of the file
-        self,
-        gathering: Gathering,
-        channel: Channel,
-        node: int,
-        hot: Bools,
-        *,
-        seconds: float,
-        blocks: int,
+    def __init__(
+        self, gathering: Gathering, channel: Channel, node: int, hot: Bools, extent: Extent
     ) -> None:
         self._gathering = gathering
         self._channel = channel
         self._node = node
         self._hot = hot
         comparisons = max(1, int(np.count_nonzero(hot)))
-        self._period_ns = max(_PERIOD_NS, round(seconds * 1e9 * comparisons / _MOST_SUMMARIES))
+        shortest = round(extent.seconds * 1e9 * comparisons / _MOST_SUMMARIES)
+        self._period_ns = extent.period_ns or max(_PERIOD_NS, shortest)
+        self._is_asked_for = extent.period_ns is not None
         # All flops are kept until there are very many; then so many of a comparison in a block.
         self._flops_left = _MOST_FLOPS
-        self._most_flops = max(2, _MOST_FLOPS // (max(1, blocks) * comparisons))
+        self._most_flops = max(2, _MOST_FLOPS // (max(1, extent.blocks) * comparisons))
         marks = [*gathering.known_marks(), *gathering.marks_nearby]
         self._cuts = _window_ends([mark.time_ns for mark in marks])
         # Outcome of the last evaluation of each key, -1 before the first.
@@ -93,6 +105,10 @@ class Condenser:
             rows["abs_mean"] /= finite
         self._gathering.summaries.append(rows)
         self._gathering.spans.append(self._span)
+        if not self._is_asked_for:
+            self._gathering.notes.append(self._note(rows))
+
+    def _note(self, rows: Rows) -> str:
         comparisons = many(np.unique(rows["key"]).size, "comparison")
         period = f"{self._period_ns / 1e9:.1f} s"
         note = (
@@ -108,7 +124,7 @@ class Condenser:
             f"; at other times than marks, and with another window than {WINDOW_NS // 10**9} s, the"
             " score of type II is an estimate"
         )
-        self._gathering.notes.append(note)
+        return note
 
     def _condense(self, block: ReportColumns, rows: Int64s) -> Int64s:
         """Which of ``rows`` are kept as events; the others are only in a summary."""
@@ -196,6 +212,60 @@ class Condenser:
         self._held_rows = 0
 
 
+def condensed(recording: Recording, period_ns: int) -> Recording:
+    """What `Condenser` keeps of a recording in memory, with summaries of one length.
+
+    Comparisons of which a node has summaries already stay as they are.
+
+    Args:
+        recording: it.
+        period_ns: the length of a period.
+    """
+    events, summaries = recording.events, recording.summaries
+    gathering = Gathering()
+    gathering.marks += recording.marks
+    gathering.keys.all(events.keys)
+    gathering.nodes.all(events.nodes)
+    extent = Extent(recording.seconds, 1, period_ns)
+    hot = np.ones(len(events.keys), np.bool_)
+    kept = _has_summaries(events, summaries)
+    for node, name in enumerate(events.nodes):
+        rows = np.flatnonzero((events.node == node) & ~kept)
+        if rows.size:
+            condenser = Condenser(gathering, gathering.channel(name, "events"), node, hot, extent)
+            condenser.add(_part(events, rows))
+            condenser.finish()
+    found = np.concatenate([np.empty(0, EVENT_ROW), *gathering.events.blocks()])
+    made = np.concatenate([np.empty(0, SUMMARY_ROW), *gathering.summaries.blocks()])
+    own = events.take(kept).columns()
+    both = {name: np.concatenate([column, found[name]]) for name, column in own.items()}
+    keys = sorted({*events.keys, *summaries.keys})
+    nodes = sorted({*events.nodes, *summaries.nodes})
+    earlier = summaries.columns()
+    for column, before, now, words in (
+        ("key", summaries.keys, events.keys, keys),
+        ("node", summaries.nodes, events.nodes, nodes),
+    ):
+        earlier[column] = recode(getattr(summaries, column), before, words)
+        made[column] = recode(made[column], now, words)
+    joined = {name: np.concatenate([column, made[name]]) for name, column in earlier.items()}
+    return replace(
+        recording,
+        events=Events.of(**both, keys=events.keys, nodes=events.nodes),
+        summaries=Summaries.of(**joined, keys=keys, nodes=nodes),
+    )
+
+
+def _has_summaries(events: Events, summaries: Summaries) -> Bools:
+    """bool[n]: the events whose comparison has summaries of the same node."""
+    key = recode(summaries.key, summaries.keys, events.keys)
+    node = recode(summaries.node, summaries.nodes, events.nodes)
+    known = (key >= 0) & (node >= 0)
+    pairs = np.zeros((len(events.keys), len(events.nodes)), np.bool_)
+    pairs[key[known], node[known]] = True
+    return np.asarray(pairs[events.key, events.node])
+
+
 def hot_keys(sample: Int32s, keys: int, times: float) -> Bools:
     """bool[keys]: which keys have too many reports to keep each.
 
@@ -247,7 +317,7 @@ def _without(odd: Bools, values: Floats) -> Floats:
     return np.where(odd, np.nan, values)
 
 
-def _part(block: ReportColumns, kept: npt.NDArray[np.bool_]) -> ReportColumns:
+def _part(block: ReportColumns | Events, kept: Bools | Int64s) -> ReportColumns:
     return ReportColumns(
         block.time_ns[kept],
         block.key[kept],

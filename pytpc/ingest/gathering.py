@@ -110,6 +110,7 @@ class Gathering:
         folder: where rows that are too many for memory are kept; None: all stays in memory.
         run_rows: how many rows are held in memory before they go there.
         most_rows: with how many reports a file is condensed by its reader; None: never.
+        period_ns: condense all files of processes, into summaries of this length.
     """
 
     def __init__(
@@ -117,8 +118,10 @@ class Gathering:
         folder: Path | None = None,
         run_rows: int = RUN_ROWS,
         most_rows: int | None = None,
+        period_ns: int | None = None,
     ) -> None:
         self.most_rows = most_rows
+        self.period_ns = period_ns
         self.keys = WordCodes()
         self.nodes = WordCodes()
         self.channels: list[Channel] = []
@@ -166,6 +169,8 @@ class Gathering:
 
     def has_room(self, rows: int) -> bool:
         """Whether so many more reports fit into memory."""
+        if self.period_ns is not None:
+            return False
         return self.most_rows is None or len(self.events) + rows <= self.most_rows
 
     def known_marks(self) -> tuple[Mark, ...]:

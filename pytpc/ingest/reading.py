@@ -16,6 +16,7 @@ from pytpc.base.closest import path_hint
 from pytpc.base.errors import InputError, TpcError
 from pytpc.base.regular_files import open_file, real_path
 from pytpc.base.wording import listed, many, plain
+from pytpc.ingest.condense import condensed
 from pytpc.ingest.duplicates import TOLERANCE_NS
 from pytpc.ingest.folder import read_folder_into
 from pytpc.ingest.gathering import Gathering, Progress
@@ -57,6 +58,7 @@ def read(
     on_progress: Progress | None = None,
     *,
     tolerance_ns: int = TOLERANCE_NS,
+    period_ns: int | None = None,
 ) -> Recording:
     """Read recordings of one mission into memory, in order of time and every report once.
 
@@ -66,6 +68,8 @@ def read(
             each are read with it (`pytpc.recording.marks_home`).
         on_progress: called with (done, total) now and then, for one file after another.
         tolerance_ns: how far apart in time the same report may be in two files.
+        period_ns: keep of each comparison only its first evaluation, its flops, and a summary of
+            each period of this length; as recorded if it has summaries. None: all that was read.
 
     Raises:
         InputError: a file is missing, of no known format, or broken; one line.
@@ -75,10 +79,12 @@ def read(
     if converted is not None:
         recording, home = load_recording(converted), marks_home(given[0])
         nearby = marks_between(home.marks_nearby(), recording.start_ns, recording.end_ns)
-        return replace(recording, marks=joined([*recording.marks, *home.marks(), *nearby]))
-    gathering = Gathering(most_rows=MOST_ROWS)
+        marked = replace(recording, marks=joined([*recording.marks, *home.marks(), *nearby]))
+        return marked if period_ns is None else condensed(marked, period_ns)
+    gathering = Gathering(most_rows=MOST_ROWS, period_ns=period_ns)
     gather(given, gathering, on_progress)
-    return Merged(gathering, name_of(given), tolerance_ns).recording()
+    found = Merged(gathering, name_of(given), tolerance_ns).recording()
+    return found if period_ns is None else condensed(found, period_ns)
 
 
 @contextmanager

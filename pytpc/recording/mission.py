@@ -180,6 +180,13 @@ def write_marks_json(recording: Recording, folder: Path, events: int, summaries:
     Raises:
         TpcError: the file cannot be written.
     """
+    write_atomic(folder / MARKS_FILE, marks_json(recording, events, summaries))
+    if not summaries:
+        (folder / SUMMARIES_FILE).unlink(missing_ok=True)
+
+
+def marks_json(recording: Recording, events: int, summaries: int) -> bytes:
+    """The content of ``marks.json`` for tables of this many rows."""
     document = {
         "schema": _SCHEMA,
         "name": recording.name,
@@ -202,9 +209,7 @@ def write_marks_json(recording: Recording, folder: Path, events: int, summaries:
         "values": [one._asdict() for one in recording.values],
     }
     text = json.dumps(document, indent=1, sort_keys=True, ensure_ascii=False)
-    write_atomic(folder / MARKS_FILE, text.encode("utf-8", "backslashreplace") + b"\n")
-    if not summaries:
-        (folder / SUMMARIES_FILE).unlink(missing_ok=True)
+    return text.encode("utf-8", "backslashreplace") + b"\n"
 
 
 def load_recording(folder: Path) -> Recording:

@@ -10,6 +10,7 @@ import pytest
 from mission_samples import comparison, events, key, ns, static_info
 
 from pytpc.base.errors import InputError
+from pytpc.diagnosis.importance import importance_of
 from pytpc.diagnosis.ranking.posterior import diagnose_log
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording, save_recording
@@ -19,7 +20,7 @@ from pytpc_evaluation.study.data import Mission, UserMark, missions
 from pytpc_evaluation.study.fit import REASONED, Batch, fit, samples
 from pytpc_evaluation.study.judge import judge, position, save_positions
 from pytpc_evaluation.study.methods import METHODS
-from pytpc_evaluation.study.methods.importance import importance, importance_of, windows
+from pytpc_evaluation.study.methods.importance import importance, windows
 from pytpc_evaluation.study.methods.ours import _with_other_defaults
 from pytpc_evaluation.study.methods.plain import (
     by_chance,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pytpc.diagnosis.trend import trend_of
+from pytpc.diagnosis.trend import joint_trend, trend_of
 
 
 def trend(*values):
@@ -49,3 +49,17 @@ def test_many_points_and_ties_by_the_normal_distribution():
     assert rising.chance < 1e-20
     # Ties: 1, 1, 2: S = 2, variance (3*2*11 - 2*1*9) / 18 = 2.667, z = 1 / 1.633 = 0.6124.
     assert trend(1, 1, 2).chance == pytest.approx(0.5403, abs=1e-4)
+
+
+# Two series of three points that rise: S = 3 + 3, variance 2 * 3 * 2 * 11 / 18 = 7.33, z = 5 / 2.71
+# = 1.846. Their levels and times do not matter.
+def test_several_series_have_one_trend():
+    first = np.array([0.0, 1.0, 2.0]), np.array([1.0, 2.0, 3.0])
+    second = np.array([100.0, 101.0, 102.0]), np.array([-9.0, -8.0, -7.0])
+    found = joint_trend([first, second])
+    assert found.slope == 1.0
+    assert found.chance == pytest.approx(0.0649, abs=1e-4)
+    assert joint_trend([first]) == trend_of(*first)
+    one_point = np.array([0.0]), np.array([1.0])
+    assert joint_trend([one_point, one_point]) is None
+    assert joint_trend([]) is None

@@ -13,6 +13,8 @@ from pytpc.base.errors import RunError
 from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import JSON, PATH, Command
 from pytpc.cli.console import console, print_json
+from pytpc_evaluation.commands.study_fleet import fleet_group
+from pytpc_evaluation.commands.study_fleet_world import fleet_world_command
 from pytpc_evaluation.commands.study_options import STUDY, seed_option
 from pytpc_evaluation.commands.study_progress import StudyProgress
 from pytpc_evaluation.commands.study_report import report_command
@@ -149,6 +151,8 @@ def halves_command(*, as_json: bool) -> None:
 study_group.add_command(report_command)
 study_group.add_command(suggestions_command)
 study_group.add_command(sensitivity_command)
+study_group.add_command(fleet_world_command)
+study_group.add_command(fleet_group)
 
 COMMANDS: list[click.Command] = [study_group]
 

@@ -82,7 +82,7 @@ def flight_digest(flight: Flight, build: str, rate: float, settle_s: float) -> s
         [
             VERSION,
             build,
-            _read(treatment.overlay).decode("utf-8", "replace"),
+            _read(flight.overlay).decode("utf-8", "replace"),
             sorted(treatment.launch.items()),
             sorted(flight.settings().items()),
             flight.seed,

@@ -176,7 +176,7 @@ class Flier:
         arguments = {
             "rate": f"{self.rate:g}",
             "seed": str(flight.seed),
-            "treatment": str(flight.treatment.overlay.absolute()),
+            "treatment": str(flight.overlay.absolute()),
             "observer": "false",
             **flight.treatment.launch,
         }

@@ -7,7 +7,7 @@ its first judgement (rounds 2 and 3) is held back as a whole.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
@@ -96,6 +96,11 @@ class Flight:
         return out / self.label
 
     @property
+    def overlay(self) -> Path:
+        """The file of parameters that is loaded over the robot's own, before ``settings``."""
+        return self.treatment.overlay
+
+    @property
     def people(self) -> int:
         """The seed of those who look on: others in each mission, the same for a suggestion."""
         drawn = f"{self.example.name}/{self.treatment.name}/{self.seed}"
@@ -109,12 +114,27 @@ class Flight:
         Raises:
             InputError: the robot's file cannot be read, or has no such parameter.
         """
-        own = read_parameters(self.example.parameters)
-        decoys = (one for one in self.changes if one.parameter != self.treatment.parameter)
-        found = {full_name(own, one.parameter, one.node): one.new for one in decoys}
-        for setting in self.suggested:
-            found[full_name(own, setting.parameter, setting.node)] = setting.value
-        return {name: _like(own[name], value) for name, value in sorted(found.items())}
+        decoys = [one for one in self.changes if one.parameter != self.treatment.parameter]
+        wanted = [Setting(one.parameter, one.node, one.new) for one in decoys]
+        return values_on(read_parameters(self.example.parameters), [*wanted, *self.suggested])
+
+
+def values_on(
+    own: Mapping[str, object], settings: Iterable[Setting]
+) -> dict[str, float | int | bool]:
+    """What is set on a robot, by full names: of one that is there twice, the later value.
+
+    Numbers have the type that they have in the robot's own file.
+
+    Args:
+        own: what is in that file.
+        settings: what is set.
+
+    Raises:
+        InputError: the robot has no such parameter.
+    """
+    found = {full_name(own, one.parameter, one.node): one.value for one in settings}
+    return {name: _like(own[name], value) for name, value in sorted(found.items())}
 
 
 def setting_label(settings: Sequence[Setting]) -> str:

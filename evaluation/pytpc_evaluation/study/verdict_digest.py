@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import ast
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
@@ -20,7 +20,6 @@ from pytpc.base.errors import InputError
 from pytpc.recording.graph_file import GRAPH_FILE
 from pytpc.recording.mission import EVENTS_FILE, MARKS_FILE, SUMMARIES_FILE
 from pytpc_evaluation.demo.demo_examples import EXAMPLES
-from pytpc_evaluation.study.case import Method
 from pytpc_evaluation.study.changes import CHANGES_FILE
 from pytpc_evaluation.study.dataset import CAUSES_FILE, MARKED_FILE
 from pytpc_evaluation.treatment import TREATMENT_FILE
@@ -51,7 +50,7 @@ def mission_digest(out: Path, mission: Path, half: str) -> str:
     return digest_of([half, *map(contents, files)])
 
 
-def method_digest(method: Method) -> str:
+def method_digest(method: Callable[..., object]) -> str:
     """Of the code by which a method is judged, its own and that of all modules of ours it uses."""
     return _code_digest(method.__module__)
 

@@ -17,7 +17,7 @@ from pytpc.present.page.reported_mission import ReportedMission
 from pytpc.present.page.terms import TERMS, explained, term
 from pytpc.present.page.view import ROWS, mission_view
 
-_OWN = ("report-figures.js", "report-timeline.js", "report.js")
+_OWN = ("theme.js", "report-figures.js", "report-timeline.js", "report.js")
 
 
 def page_text(

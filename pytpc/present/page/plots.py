@@ -148,7 +148,7 @@ def evidence_svg(data: PlotData, style: EvidenceStyle, ident: str, label: str) -
 
 def _values(axes: Axes, data: PlotData, style: EvidenceStyle) -> None:
     colour = COLOUR["culprit" if style.culprit else "value"]
-    finite, limit = _drawable(data.cmp), _drawable(data.thresh)
+    finite, limit = drawable(data.cmp), drawable(data.thresh)
     axes.plot(data.time, finite, color=colour, linewidth=1.4)
     _boxes(axes, data.kept, colour)
     # A parameter keeps its value while nothing is compared with it.
@@ -231,7 +231,7 @@ def _dots(axes: Axes, data: PlotData, values: Floats, colour: str) -> None:
         )
 
 
-def _drawable(values: Floats) -> Floats:
+def drawable(values: Floats) -> Floats:
     """Drawable values: finite, and small enough for matplotlib to subtract."""
     return np.clip(np.where(np.isfinite(values), values, np.nan), -_LARGEST, _LARGEST)
 
@@ -239,8 +239,8 @@ def _drawable(values: Floats) -> Floats:
 def value_span(data: PlotData, style: EvidenceStyle) -> tuple[float, float, bool]:
     """The ends of the axis of values, and whether values lie beyond them."""
     suggested = np.nan if style.suggested is None else style.suggested
-    limits = np.append(_drawable(data.thresh), suggested)
-    low, high, beyond = _span(_drawable(_compared(data)), limits)
+    limits = np.append(drawable(data.thresh), suggested)
+    low, high, beyond = _span(drawable(_compared(data)), limits)
     margin = 0.08 * (high - low)
     return low - margin, high + margin + _HEADROOM * (high - low), beyond
 

@@ -4,14 +4,7 @@ There a program is run many times, and some runs fail. Here windows of one missi
 12 s before a mark failed, and the rest of the mission, cut into windows of the same length, passed.
 (Windows of a mission that nobody marked would all pass; it has no ranking.) The predicates of a
 comparison are that it was true, that it was false, and that its result changed; each was observed
-in a window in which the comparison was evaluated. With F and S the failing and passing windows in
-which a predicate was true, and F_obs and S_obs those in which it was observed:
-
-    Increase = F / (F + S) - F_obs / (F_obs + S_obs)
-    Importance = 2 / (1 / Increase + log(NumF) / log(F))
-
-and 0 where Increase is not positive or the formula has no value. Where only one window failed both
-logarithms are 0; a predicate that was true in it has all of the recall there is, 1.
+in a window in which the comparison was evaluated. `pytpc.diagnosis.importance` has the formula.
 """
 
 from __future__ import annotations
@@ -19,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from pytpc.base.columns import Bools, Int64s
+from pytpc.diagnosis.importance import importance_of
 from pytpc.diagnosis.question import WINDOW_S
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc_evaluation.study.case import Case, Verdict
@@ -69,20 +63,6 @@ def windows(
     failed = np.zeros(sum(part.size for part in begins), np.bool_)
     failed[: marks.size] = True
     return np.concatenate(begins), np.concatenate(ends), failed
-
-
-def importance_of(true: Bools, observed: Bools, failed: Bools) -> float:
-    """Importance of a predicate, from what it was in each window (bool[windows] each)."""
-    f, s = np.count_nonzero(true & failed), np.count_nonzero(true & ~failed)
-    f_obs, s_obs = np.count_nonzero(observed & failed), np.count_nonzero(observed & ~failed)
-    failing = np.count_nonzero(failed)
-    if not f:
-        return 0.0
-    increase = f / (f + s) - f_obs / (f_obs + s_obs)
-    recall = 1.0 if failing == 1 else float(np.log(f) / np.log(failing))
-    if increase <= 0 or recall <= 0:
-        return 0.0
-    return float(2.0 / (1.0 / increase + 1.0 / recall))
 
 
 def _within(times: Int64s, begins: Int64s, ends: Int64s) -> Bools:

@@ -23,22 +23,7 @@
   }, { rootMargin: "300px" });
   for (const host of document.querySelectorAll(".figure[data-mission]")) seen.observe(host);
 
-  // The theme follows the machine until a button says otherwise.
-  const dark = matchMedia("(prefers-color-scheme: dark)");
-  const theme = document.getElementById("theme");
-  theme.hidden = false;
-  const isDark = () => (root.dataset.theme ? root.dataset.theme === "dark" : dark.matches);
-  const told = () => {
-    theme.textContent = isDark() ? "Light" : "Dark";
-    theme.setAttribute("aria-label", isDark() ? "Show the page in light colours" : "Show the page in dark colours");
-    tpcFigures.repaint();
-  };
-  theme.addEventListener("click", () => {
-    root.dataset.theme = isDark() ? "light" : "dark";
-    told();
-  });
-  dark.addEventListener("change", told);
-  told();
+  tpcTheme(() => tpcFigures.repaint());
 
   // Sorting: a press on a column's head; another press turns it around.
   const sort = (table, id, head) => {

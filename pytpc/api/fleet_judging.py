@@ -1,0 +1,164 @@
+"""What each bad mission of a fleet says by itself, beside good ones: a task for each of them."""
+
+from __future__ import annotations
+
+import tempfile
+from collections import defaultdict
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from math import log
+from pathlib import Path
+
+import pyarrow as pa
+
+from pytpc.api.comparing import RecordedRun
+from pytpc.api.dask_engine import Engine
+from pytpc.api.diagnosing import AskedMission
+from pytpc.api.fleet_missions import FleetMission, Unread, build_of, opened, write_folder
+from pytpc.base.errors import InputError
+from pytpc.diagnosis.question import Question
+from pytpc.diagnosis.ranking.blame import blame
+from pytpc.diagnosis.thinned import thinned
+from pytpc.fleet.store import Fleet, Place
+from pytpc.recording.mission import load_recording
+
+MOST_BAD = 48
+"""So many bad missions are judged one by one, spread over robots and days: more say hardly more."""
+GOOD_OWN, GOOD_OTHERS = 4, 4
+"""So many good missions of its robot, and of its sisters, stand beside each of them."""
+
+JUDGED = pa.schema(
+    [
+        pa.field("mission", pa.string()),
+        pa.field("robot", pa.string()),
+        pa.field("parameter", pa.string()),
+        pa.field("log_probability", pa.float64()),
+        pa.field("log_none", pa.float64()),
+    ]
+)
+"""A row for each parameter that a mission suspects; missions without a suspect have none."""
+
+_LEAST = 1e-300
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """The suspects of the missions (`JUDGED`), and the missions that cannot be read."""
+
+    rows: pa.Table
+    unread: tuple[Unread, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class _Job:
+    fleet: Fleet
+    bad: FleetMission
+    good: tuple[Place, ...]
+    build: str
+
+
+def judged(
+    fleet: Fleet,
+    engine: Engine,
+    found: Sequence[FleetMission],
+    build: str,
+    on_progress: Callable[[int, int], None] | None = None,
+) -> Judged:
+    """Judge bad missions by their marks, each beside good ones.
+
+    Args:
+        fleet: the data set.
+        engine: where the tasks run.
+        found: the missions, good and bad.
+        build: the build whose keys and names count.
+        on_progress: called with (done, in all).
+    """
+    good = [one for one in found if not one.is_bad]
+    jobs = [
+        _Job(fleet, bad, tuple(one.place for one in _beside(bad, good)), build)
+        for bad in spread([one for one in found if one.is_bad and one.marks], MOST_BAD)
+    ]
+    return engine.joined(_judged, jobs, _joined, on_progress)
+
+
+def spread(found: Sequence[FleetMission], most: int) -> list[FleetMission]:
+    """At most so many missions: of each robot about as many, evenly over its time."""
+    robots: defaultdict[str, list[FleetMission]] = defaultdict(list)
+    for one in sorted(found, key=lambda one: (one.place.robot, one.start_ns, one.place)):
+        robots[one.place.robot].append(one)
+    left, chosen = most, list[FleetMission]()
+    for number, own in enumerate(sorted(robots.values(), key=lambda own: (len(own), own[0].place))):
+        share = min(len(own), left // (len(robots) - number))
+        chosen += [own[(2 * place + 1) * len(own) // (2 * share)] for place in range(share)]
+        left -= share
+    return sorted(chosen, key=lambda one: one.place)
+
+
+def _beside(bad: FleetMission, good: Sequence[FleetMission]) -> list[FleetMission]:
+    """The good missions that stand beside a bad one: the nearest in time."""
+
+    def nearest(one: FleetMission) -> tuple[int, Place]:
+        return abs(one.start_ns - bad.start_ns), one.place
+
+    own = sorted((one for one in good if one.place.robot == bad.place.robot), key=nearest)
+    rest = spread([one for one in good if one.place.robot != bad.place.robot], GOOD_OTHERS)
+    return [*own[:GOOD_OWN], *rest]
+
+
+def _judged(job: _Job) -> Judged:
+    """The task of one bad mission."""
+    try:
+        static = build_of(job.fleet, job.build)
+        good = [_good(job.fleet, place) for place in job.good]
+        with opened(job.fleet, job.bad.place) as mission:
+            run = mission.run.in_build(static)
+            asked = AskedMission.of(
+                run, static, Question(declared=()), [one.run for one in good if one is not None]
+            )
+            found = blame(asked.run.recording, asked.static_info, asked.question)
+    except InputError as error:
+        return Judged(JUDGED.empty_table(), (Unread(job.bad.place, error.message),))
+    none = log(max(found.none, _LEAST))
+    rows = [
+        {
+            "mission": job.bad.place.mission,
+            "robot": job.bad.place.robot,
+            "parameter": one.parameter,
+            "log_probability": log(max(one.probability, _LEAST)),
+            "log_none": none,
+        }
+        for one in found.suspects
+    ]
+    return Judged(pa.Table.from_pylist(rows, schema=JUDGED))
+
+
+@dataclass(frozen=True)
+class _Good:
+    """A good run made small; its folder is there as long as it is."""
+
+    folder: tempfile.TemporaryDirectory[str]
+    run: RecordedRun
+
+
+@lru_cache(maxsize=64)
+def _of_store(url: str, patience_s: float, place: Place) -> _Good | None:
+    folder = tempfile.TemporaryDirectory(prefix="pytpc-fleet-")
+    path = Path(folder.name) / place.mission
+    try:
+        write_folder(Fleet(url, patience_s), place, path)
+        recording = replace(thinned(load_recording(path)), marks=())
+    except InputError:
+        # A good run more or less: who asks for the missions is told of it.
+        folder.cleanup()
+        return None
+    return _Good(folder, RecordedRun(recording, path))
+
+
+def _good(fleet: Fleet, place: Place) -> _Good | None:
+    return _of_store(fleet.url, fleet.patience_s, place)
+
+
+def _joined(parts: list[Judged]) -> Judged:
+    rows = pa.concat_tables([JUDGED.empty_table(), *(part.rows for part in parts)])
+    return Judged(rows, tuple(one for part in parts for one in part.unread))

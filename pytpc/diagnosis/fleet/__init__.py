@@ -1,0 +1,1 @@
+"""From digests of many missions to answers about a fleet of robots."""

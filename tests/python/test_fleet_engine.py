@@ -1,0 +1,67 @@
+"""The engine: the same results by threads, by processes and by a scheduler."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from recorded_fleet import dies_once, fails, joined, square
+
+from patience import PATIENCE_S, wait_for
+from pytpc.api.dask_engine import engine
+from pytpc.base.errors import InputError
+
+pytestmark = pytest.mark.filterwarnings("ignore")
+NUMBERS = list(range(100))
+
+
+@pytest.mark.parametrize("cluster", [None, "local"])
+def test_results_are_in_the_order_of_the_items(cluster: str | None):
+    told = []
+    with engine(cluster, 2) as own:
+        assert own.map(square, NUMBERS, lambda *at: told.append(at)) == [[n * n] for n in NUMBERS]
+        assert own.joined(square, NUMBERS, joined) == [n * n for n in NUMBERS]
+        assert own.joined(square, [3], joined) == [9]
+        assert own.map(square, []) == []
+        assert own.joined(square, [], joined) == []
+        with pytest.raises(ZeroDivisionError, match="7 / 0"):
+            own.map(fails, [7])
+    assert sorted(told) == [(done, 100) for done in range(1, 101)]
+
+
+def test_a_worker_that_is_killed_changes_nothing(tmp_path: Path):
+    with engine("local", 2) as own:
+        jobs = [(tmp_path, number) for number in range(20)]
+        assert own.joined(dies_once, jobs, joined) == [n * n for n in range(20)]
+    # It was done once more.
+    assert (tmp_path / "died").exists()
+    assert len((tmp_path / "5").read_text()) >= 2
+
+
+def test_a_scheduler_that_runs_already(tmp_path: Path):
+    file = tmp_path / "scheduler.json"
+    folder = str(Path(__file__).parent)
+    env = {"PYTHONPATH": ":".join([folder, *sys.path]), "PATH": "/usr/bin:/bin"}
+    command = [sys.executable, "-m", "distributed.cli.dask_scheduler"]
+    own = ["--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(file)]
+    started = [subprocess.Popen([*command, *own], env=env, stderr=subprocess.DEVNULL)]
+    try:
+        wait_for(lambda: file.is_file() and file.read_text().endswith("}"))
+        worker = [sys.executable, "-m", "distributed.cli.dask_worker", "--no-dashboard"]
+        words = [*worker, "--scheduler-file", str(file), "--nthreads", "1"]
+        started.append(subprocess.Popen(words, env=env, stderr=subprocess.DEVNULL, cwd=tmp_path))
+        with engine(json.loads(file.read_text())["address"]) as found:
+            assert found.joined(square, NUMBERS, joined) == [n * n for n in NUMBERS]
+    finally:
+        for one in reversed(started):
+            one.terminate()
+            one.wait(PATIENCE_S)
+
+
+def test_nobody_answers():
+    what = "no scheduler of Dask answers at tcp://127"
+    with pytest.raises(InputError, match=what), engine("tcp://127.0.0.1:9"):
+        pass
