@@ -188,6 +188,9 @@ class World:
                 recorded(home / name)
             for name in ("today", "tomorrow", "missions/first", "missions/second"):
                 recorded(home / name, home / "marks.csv")
+        if "pytpc fleet add" in text:
+            for robot in ("robot6", "robot7", "robot8"):
+                recorded(home / "missions" / robot / "monday")
         if "pytpc rank monday tuesday" in text:
             for name in ("monday", "tuesday"):
                 shutil.copy(home / "marks.csv", home / name)
