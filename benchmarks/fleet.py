@@ -292,6 +292,8 @@ def main() -> None:
     robots = given.robots or max(6, given.missions // 50)
     settings = WorldSettings(robots=robots, missions=given.missions, reports=given.reports)
     batch = max(2, min(-(-given.missions // 2), int(given.raw * 1e9 / RAW_BYTES / given.reports)))
+    if given.folder is not None:
+        given.folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=given.folder) as name:
         folder = Path(name)
         long_missions(folder)

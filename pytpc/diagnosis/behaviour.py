@@ -197,7 +197,8 @@ def _drift(stream: ResultStream, margin: Floats) -> Drift | None:
     if clock.size < FEWEST or clock[-1] < SHORTEST_S:
         return None
     parts = np.minimum((PARTS * clock / clock[-1]).astype(np.int64), PARTS - 1)
-    split = [(clock[parts == part], margin[parts == part]) for part in np.unique(parts)]
+    begins = np.flatnonzero(parts[1:] != parts[:-1]) + 1
+    split = zip(np.split(clock, begins), np.split(margin, begins), strict=True)
     times, medians = np.array([[_median(one) for one in both] for both in split]).T
     found = trend_of(times, medians)
     if found is None or not found.is_clear:

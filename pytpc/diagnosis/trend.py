@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pytpc.base.columns import Floats
+from pytpc.base.columns import Floats, Int64s, frozen
 
 CHANCE = 0.01
 """How likely a slope is to be seen where there is none."""
@@ -107,9 +107,16 @@ def lines_of(series: Sequence[tuple[Floats, Floats]]) -> tuple[Line, Line, Line]
 
 def _pairs_of(times: Floats, values: Floats) -> tuple[Floats, Floats]:
     """By how much the values of all pairs of points differ, and the slopes."""
-    first, second = np.triu_indices(times.size, 1)
+    first, second = _triangle(times.size)
     steps = values[second] - values[first]
     return steps, steps / (times[second] - times[first])
+
+
+@lru_cache(8)
+def _triangle(count: int) -> tuple[Int64s, Int64s]:
+    """The places of all pairs of so many points."""
+    first, second = np.triu_indices(count, 1)
+    return frozen(first), frozen(second)
 
 
 def _chance(order: int, values: Floats) -> float:
