@@ -129,14 +129,32 @@ def ask(
     """
     known = missions(fleet, engine, selection)
     build = newest_build(known.found)
-    found = known.found
+    found, again = once_each(known.found)
     parts = [
         _Part(fleet, found[at : at + _TOGETHER], build, with_values)
         for at in range(0, len(found), _TOGETHER)
     ]
     read = engine.joined(_read, parts, _joined, on_progress)
-    unread = (*known.unread, *read.unread)
+    unread = (*known.unread, *again, *read.unread)
     return Asked(found, build, Digests(read.rows, read.values, unread))
+
+
+def once_each(
+    found: Sequence[FleetMission],
+) -> tuple[tuple[FleetMission, ...], tuple[Unread, ...]]:
+    """The missions, each on its first day only; and those that are there again on another day.
+
+    A mission whose clock says nothing has the day of its files, which a copy may have changed.
+    """
+    first: dict[tuple[str, str], FleetMission] = {}
+    again = []
+    for one in sorted(found, key=lambda one: one.place.day):
+        other = first.setdefault((one.place.robot, one.place.mission), one)
+        if other is not one:
+            why = f"is there on {other.place.day}, too, and counts only then: drop one of both"
+            again.append(Unread(one.place, why))
+    kept = {one.place for one in first.values()}
+    return tuple(one for one in found if one.place in kept), tuple(again)
 
 
 def _read(part: _Part) -> Digests:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from pytpc.api.dask_engine import engine
-from pytpc.api.fleet_asking import newest_build, rank
+from pytpc.api.fleet_asking import newest_build, once_each, rank
 from pytpc.api.fleet_judging import spread
 from pytpc.api.fleet_missions import FleetMission, missions
 from pytpc.base.errors import InputError
@@ -143,6 +144,16 @@ def test_without_a_bad_mission(world):
 def flown(robot: str, number: int) -> FleetMission:
     place = Place(robot, "2026-11-30", f"m{number:03}")
     return FleetMission(place, "m", "", "b", "bad", "edges", "1", number, number, 1, 1, 1, 1.0, ())
+
+
+def test_a_mission_on_two_days_counts_once():
+    one, other = flown("a", 1), flown("b", 1)
+    again = replace(one, place=one.place._replace(day="2026-12-02"))
+    found, told = once_each((again, other, one))
+    assert found == (other, one)
+    assert [(place, why) for place, why in told] == [
+        (again.place, "is there on 2026-11-30, too, and counts only then: drop one of both")
+    ]
 
 
 # Of robots with 1, 9 and 90 missions, nine are 1, 4 and 4, from the middle of equal parts.

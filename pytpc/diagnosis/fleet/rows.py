@@ -276,7 +276,8 @@ def _rows(table: pa.Table) -> Rows:
     nodes, node = _without_robots(*words["node"], own)
     parameters, parameter = _without_robots(*words["parameter"], own)
     keys, base = _sorted(*words["key"], base_key)
-    order, which, starts = _series(mission, (base, node, parameter), words["key"])
+    own_names = [_sorted(*words[name]) for name in ("key", "node", "parameter")]
+    order, which, starts = _series(mission, (base, node, parameter), own_names)
     lineno = _whole(table, "lineno")
     said = {name: words[name] for name in ("file", "relation", *_MORE_WORDS)}
     # Rows are sorted by comparison, then by mission: the last one is that of the newest mission.
@@ -345,11 +346,19 @@ def _check_missions(missions: tuple[Int32s, Int64s], **columns: npt.NDArray[Any]
 
 
 def _series(
-    mission: Int32s, codes: tuple[Int32s, Int32s, Int32s], keys: tuple[list[str], Int32s]
+    mission: Int32s,
+    codes: tuple[Int32s, Int32s, Int32s],
+    own_names: list[tuple[list[str], Int32s]],
 ) -> tuple[Int64s, Int32s, Int64s]:
-    """The order of the rows by comparison and mission, their comparison, and where each begins."""
+    """The order of the rows by comparison and mission, their comparison, and where each begins.
+
+    By their own names (key, node and parameter) rows of one comparison are told apart: instances,
+    and nodes that have one name only without the robot's namespace.
+    """
     base, node, parameter = codes
-    _, instance = _sorted(*keys)
+    instance = np.zeros(mission.size, np.int64)
+    for names, code in own_names:
+        instance = np.unique(instance * max(1, len(names)) + code, return_inverse=True)[1]
     order = np.lexsort((instance, mission, node, base, parameter))
     name = np.column_stack([parameter[order], base[order], node[order]])
     new = np.ones(order.size, np.bool_)
