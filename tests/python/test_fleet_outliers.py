@@ -78,6 +78,12 @@ def test_a_decision_says_that_the_value_is_none_of_the_sisters():
     assert [(one.robot, one.is_set_otherwise) for one in found.decisions] == [("d", True)]
 
 
+def test_an_infinite_limit_has_no_distance():
+    inf = {"thresholds": lambda robot, n: 0 if robot == "d" else 1}
+    found = fleet({"a": 0.5, "b": 0.5, "c": 0.5, "d": math.inf}, **inf)
+    assert [(one.value, one.usual, one.score) for one in found.settings] == [("inf", "0.5", None)]
+
+
 def test_flags_have_no_distance():
     flag = {"kind": lambda robot, n: "flag", "relation": lambda robot, n: "flag"}
     found = fleet({"a": 1.0, "b": 1.0, "c": 0.0}, **flag)

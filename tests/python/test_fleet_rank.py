@@ -389,6 +389,25 @@ def test_a_gain_that_no_comparison_reports_may_be_the_cause():
     assert [one.parameter for one in found.suspects[1:]] == ["/nav/p0", "/nav/p1"]
 
 
+# A limit that is switched off in the bad missions is a number above all others.
+@pytest.mark.parametrize("is_recorded", [True, False])
+def test_an_infinite_limit_may_be_the_cause(is_recorded):
+    flights = [Flight(f"m{n}", day=1 + n, verdict="bad" if n < 4 else "good") for n in range(12)]
+    off = {} if is_recorded else {"thresh_last": math.inf, "thresholds": 0}
+    rows = [
+        digest(one, number) | (off if number == 0 and one.verdict == "bad" else {})
+        for one in flights
+        for number in (0, 1)
+    ]
+    values = recorded(flights, "/nav/p0", lambda n: math.inf if n < 4 else 5)
+    for one in values:
+        one["value"] = one["value"].replace("inf", "Infinity")
+    given = pa.Table.from_pylist(values) if is_recorded else None
+    found = rank_fleet(Rows.of(table(rows)), values=given)
+    assert found.accused == "/nav/p0"
+    assert [one.text for one in found.suspects[0].values] == ["inf", "5" if is_recorded else "0.5"]
+
+
 def test_notes_say_what_is_missing():
     rows = [digest(Flight("m1", "r1", verdict="bad")), digest(Flight("m2", "r2", 2))]
     rows.append(digest(Flight("m3", "r2", 3, "unknown")))

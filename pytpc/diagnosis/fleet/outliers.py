@@ -140,7 +140,7 @@ def _own_values(rows: Rows, settings: Settings) -> frozenset[tuple[str, str]]:
 def _settings(rows: Rows, settings: Settings) -> Iterator[_Set]:
     for parameter, robot, value in _each(rows, settings):
         numbers = settings.numbers[value]
-        is_scale = not settings.flags[parameter] and not np.isnan(numbers).any()
+        is_scale = not settings.flags[parameter] and bool(np.isfinite(numbers).all())
         for place in range(robot.size):
             rest = np.delete(value, place)
             codes, counts = np.unique(rest, return_counts=True)

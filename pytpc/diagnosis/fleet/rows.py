@@ -87,7 +87,7 @@ class Rows:
         seconds: float64[n], for how long it was evaluated.
         true_share: float64[n], of these seconds.
         was_true, was_false: bool[n], whether its result ever was.
-        thresh: float64[n], the last threshold; nan where it had several or no finite one.
+        thresh: float64[n], the threshold, which may be infinite; nan where it had several, or none.
         value_low, value_high: float64[n], the range of the compared values.
         least, median: float64[n], of the margins, in the unit of the comparison; nan without one.
     """
@@ -296,7 +296,8 @@ def _rows(table: pa.Table) -> Rows:
     )
     values = {name: numbers_of(table, name)[order] for name in _NUMBERS}
     values |= {name: numbers_of(table, name, maybe=True)[order] for name in _MAYBE}
-    thresh, constant = values.pop("thresh_last"), (_whole(table, "thresholds") == 1)[order]
+    thresh, finite = values.pop("thresh_last"), _whole(table, "thresholds")[order]
+    constant = np.where(np.isfinite(thresh), finite == 1, finite == 0)
     turns = _whole(table, "turns")[order]
     share = values["true_share"]
     begins, ends = (_truths(table, name)[order] for name in _TRUTHS)
@@ -317,7 +318,7 @@ def _rows(table: pa.Table) -> Rows:
         turns=frozen(turns),
         was_true=frozen(begins | ends | (share > 0) | (turns > 0)),
         was_false=frozen(~begins | ~ends | (share < 1) | (turns > 0)),
-        thresh=frozen(np.where(constant & np.isfinite(thresh), thresh, np.nan)),
+        thresh=frozen(np.where(constant, thresh, np.nan)),
         **{name: frozen(column) for name, column in values.items()},
     )
 
