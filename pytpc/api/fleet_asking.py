@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -26,6 +26,7 @@ from pytpc.api.fleet_missions import (
 from pytpc.api.learning import learn
 from pytpc.api.missions import with_names_of
 from pytpc.base.errors import InputError
+from pytpc.base.wording import many
 from pytpc.diagnosis.fleet.drifting import fleet_drift
 from pytpc.diagnosis.fleet.finding import TurnQuery, find_missions, turns_in
 from pytpc.diagnosis.fleet.outliers import fleet_outliers
@@ -245,8 +246,29 @@ def rank(
     """
     asked = ask(fleet, engine, selection, with_values=True, on_progress=on_progress)
     found = judged(fleet, engine, asked.missions, asked.build, on_progress)
-    ranking = rank_fleet(asked.rows, values=asked.digests.values, diagnoses=found.rows)
-    return Ranked(ranking, asked.missions, (*asked.digests.unread, *found.unread))
+    rows = asked.rows
+    unread = (*asked.digests.unread, *found.unread)
+    told = {*rows.places, *((one.place.robot, one.place.mission) for one in unread)}
+    notes = tuple(_notes(asked.missions, told))
+    if notes and not rows.bad.any():
+        raise InputError(f"no bad mission can be judged: {'; '.join(notes)}")
+    ranking = rank_fleet(rows, values=asked.digests.values, diagnoses=found.rows)
+    ranking = replace(ranking, notes=(*ranking.notes, *notes))
+    return Ranked(ranking, asked.missions, unread)
+
+
+def _notes(found: Sequence[FleetMission], told: set[tuple[str, str]]) -> Iterator[str]:
+    """What keeps missions from counting, or bad ones from having a diagnosis.
+
+    ``told`` are the robots and missions that count, or that could not be read.
+    """
+    bad = [one for one in found if one.is_bad]
+    silent = [one for one in found if (one.place.robot, one.place.mission) not in told]
+    if silent:
+        so_bad = sum(one.is_bad for one in silent)
+        yield f"{many(len(silent), 'mission')} without a comparison, not counted ({so_bad:,} bad)"
+    if bad and not any(one.marks for one in bad):
+        yield "no bad mission has marks, so that none has a diagnosis: say when it went wrong"
 
 
 class Drifts(NamedTuple):

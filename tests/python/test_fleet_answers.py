@@ -7,9 +7,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from click.testing import CliRunner, Result
+from fleet_samples import Flight, digest
 
 from pytpc.api.dask_engine import engine
 from pytpc.api.fleet_asking import newest_build, once_each, rank
@@ -18,6 +20,7 @@ from pytpc.api.fleet_missions import FleetMission, missions
 from pytpc.base.errors import InputError
 from pytpc.cli.main import main
 from pytpc.fleet.store import Fleet, Place
+from pytpc.fleet.tables import COMPARISONS, MISSIONS
 from pytpc_evaluation.fleet.generating import generate
 from pytpc_evaluation.fleet.world import WorldSettings
 
@@ -139,6 +142,41 @@ def test_without_a_bad_mission(world):
     assert (done.exit_code, "give it as 2026-11-30" in done.stderr) == (2, True)
     with pytest.raises(InputError, match="no missions"):
         newest_build(())
+
+
+def stored(fleet: Fleet, number: int, verdict: str, *, is_silent: bool = False) -> None:
+    """A mission without reports; p0 is 0.9 in bad ones. A silent one compared nothing."""
+    flight = Flight(f"m{number}", day=1 + number, verdict=verdict)
+    row = digest(flight, thresh=0.9 if verdict == "bad" else 0.5)
+    of_mission = {field.name: row.get(field.name, 0) for field in MISSIONS}
+    words = dict.fromkeys(("name", "source", "stamp", "build", "keep", "tpc"), "")
+    of_mission |= {**words, "seconds": 60.0, "notes": [], "files": []}
+    row |= {field.name: 0 for field in COMPARISONS if field.name not in row}
+    rows = [] if is_silent else [row]
+    fleet.write(
+        Place(flight.robot, row["day"], flight.mission),
+        {
+            "missions": pa.Table.from_pylist([of_mission], schema=MISSIONS),
+            "comparisons": pa.Table.from_pylist(rows, schema=COMPARISONS),
+        },
+    )
+
+
+def test_missions_that_do_not_count_are_said(tmp_path: Path):
+    fleet = Fleet(str(tmp_path))
+    fleet.begin()
+    stored(fleet, 0, "bad", is_silent=True)
+    stored(fleet, 1, "good")
+    with engine(workers=1) as own:
+        with pytest.raises(InputError, match="1 mission without a comparison, not counted"):
+            rank(fleet, own)
+        stored(fleet, 2, "bad")
+        found = rank(fleet, own).ranking
+    assert (found.bad, found.good) == (1, 1)
+    assert found.notes == (
+        "1 mission without a comparison, not counted (1 bad)",
+        "no bad mission has marks, so that none has a diagnosis: say when it went wrong",
+    )
 
 
 def flown(robot: str, number: int) -> FleetMission:

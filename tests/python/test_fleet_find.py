@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 from fleet_samples import Flight, digest, table
@@ -105,6 +106,19 @@ def times(query, **more):
 )
 def test_turns_of_a_mission(query, expected):
     assert times(query) == expected
+
+
+# Two objects of one class, of which the second turns at 4 s.
+def test_turns_of_one_instance():
+    def turned(asked):
+        return [one.time_ns / 1e9 for one in turns_in(mission, static, TurnQuery(key=asked))]
+
+    own = [f"{key(0)}#{number}" for number in (1, 2)]
+    static = static_info(*(replace(comparison(0, "~a"), key=one) for one in own))
+    log = events([(1, 0, 0, 1, 2), (2, 0, 1, 3, 2), (3, 1, 0, 1, 2), (4, 1, 1, 3, 2)])
+    mission = Recording("m", replace(log, keys=tuple(own)), (), 0, ns(10))
+    assert turned(own[1]) == [4]
+    assert turned(key(0)) == [2, 4]
 
 
 def test_a_turn_has_its_values():

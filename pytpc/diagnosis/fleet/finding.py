@@ -35,7 +35,7 @@ class TurnQuery:
     Attributes:
         place: ``file:line`` or ``file``; the end of a path is enough.
         parameter: a name as people give it, see `same_parameter`.
-        key: of a comparison in the source.
+        key: of a comparison; with the number of an instance only that one in each mission.
         within: the largest margin, in the unit of the comparison's margins.
         low, high: the range of the compared value.
         had: names of parameters, and the values that they must have had at the turn.
@@ -51,11 +51,16 @@ class TurnQuery:
 
     def names(self, key: str, parameter: str, place: str) -> bool:
         """Whether it asks for a comparison, by its ``file:line``."""
-        if self.key and base_key(key) != base_key(self.key):
+        if self.key and not _is_key(key, self.key):
             return False
         if self.place and not _is_at(place, self.place):
             return False
         return not self.parameter or same_parameter(self.parameter, parameter)
+
+
+def _is_key(key: str, asked: str) -> bool:
+    """Whether a key is asked for; without a number it is all instances."""
+    return asked in (key, base_key(key)) or (key == base_key(key) == base_key(asked))
 
 
 def find_missions(rows: Rows, query: TurnQuery) -> tuple[FoundMission, ...]:
