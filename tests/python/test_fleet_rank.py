@@ -6,6 +6,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 from fleet_samples import Flight, digest, table
+from mission_samples import key
 
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.fleet.behaviour_evidence import MOST, differing, worth
@@ -113,6 +114,23 @@ def test_missions_without_a_known_value_say_little():
     assert many == pytest.approx(UNCHANGED / 2)
     known = by_values((2, True), (1, False))
     assert by_values((2, True), (math.nan, True), (1, False)) < known
+
+
+# What is compared only when something has gone wrong is known in bad missions alone.
+def test_a_value_that_is_known_in_bad_missions_only_says_next_to_nothing():
+    assert abs(by_values(*[(1, True)] * 10, *[(math.nan, False)] * 30)) < 1
+    rows = fleet()
+    recovery = [
+        row | {"key": key(9), "parameter": "/nav/retry"}
+        for row in rows
+        if row["verdict"] == "bad" and row["parameter"] == "/nav/p3"
+    ]
+    rows = [row for row in rows if row["parameter"] != "/nav/p0"]
+    found = rank_fleet(Rows.of(table(rows + recovery)))
+    assert found.accused is None
+    (one,) = [one for one in found.suspects if one.parameter == "/nav/retry"]
+    assert one.reason == "its value is known in no good mission"
+    assert one.probability < 0.5
 
 
 def test_without_good_missions_values_say_next_to_nothing():
