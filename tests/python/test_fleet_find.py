@@ -139,6 +139,18 @@ def test_only_turns_at_which_a_parameter_had_a_value():
     assert times(TurnQuery(had=(("mode", 1),))) == []
 
 
+# Answers call /r-1's parameter /n/speed, and print 0.30000001192092896 as 0.3.
+def test_a_value_is_asked_for_as_answers_print_it():
+    known = ParameterValues(
+        [SetValue(0, "/r_1/n/speed", 0.30000001192092896), SetValue(0, "/r_1/n/big", 10**400)]
+    )
+    asked = TurnQuery(had=(("/n/speed", 0.3),))
+    assert times(asked, values=known, robot="r-1") == [2, 4, 6]
+    assert times(asked, values=known, robot="r-2") == []
+    assert times(TurnQuery(had=(("speed", 0.3001),)), values=known, robot="r-1") == []
+    assert times(TurnQuery(had=(("big", 1.0),)), values=known, robot="r-1") == []
+
+
 def test_a_turn_to_what_is_no_number():
     log = events([(1, 0, 0, 1.0, 2.0), (2, 0, 1, math.nan, 2.0), (3, 0, 0, math.nan, 2.0)])
     mission = Recording("m", log, (), 0, ns(10))
