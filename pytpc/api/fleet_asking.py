@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import pyarrow as pa
 
 from pytpc.api.dask_engine import Engine
-from pytpc.api.fleet_judging import judged, spread
+from pytpc.api.fleet_judging import judged, notes_on, spread
 from pytpc.api.fleet_missions import (
     EVERY,
     FleetMission,
@@ -21,12 +21,12 @@ from pytpc.api.fleet_missions import (
     Unread,
     build_of,
     missions,
+    once_each,
     opened,
 )
 from pytpc.api.learning import learn
 from pytpc.api.missions import with_names_of
 from pytpc.base.errors import InputError
-from pytpc.base.wording import many
 from pytpc.diagnosis.fleet.drifting import fleet_drift
 from pytpc.diagnosis.fleet.finding import TurnQuery, find_missions, turns_in
 from pytpc.diagnosis.fleet.outliers import fleet_outliers
@@ -140,24 +140,6 @@ def ask(
     return Asked(found, build, Digests(read.rows, read.values, unread))
 
 
-def once_each(
-    found: Sequence[FleetMission],
-) -> tuple[tuple[FleetMission, ...], tuple[Unread, ...]]:
-    """The missions, each on its first day only; and those that are there again on another day.
-
-    A mission whose clock says nothing has the day of its files, which a copy may have changed.
-    """
-    first: dict[tuple[str, str], FleetMission] = {}
-    again = []
-    for one in sorted(found, key=lambda one: one.place.day):
-        other = first.setdefault((one.place.robot, one.place.mission), one)
-        if other is not one:
-            why = f"is there on {other.place.day}, too, and counts only then: drop one of both"
-            again.append(Unread(one.place, why))
-    kept = {one.place for one in first.values()}
-    return tuple(one for one in found if one.place in kept), tuple(again)
-
-
 def _read(part: _Part) -> Digests:
     """The task of a few missions."""
     made = [_digest(part, one) for one in part.missions]
@@ -248,27 +230,10 @@ def rank(
     found = judged(fleet, engine, asked.missions, asked.build, on_progress)
     rows = asked.rows
     unread = (*asked.digests.unread, *found.unread)
-    told = {*rows.places, *((one.place.robot, one.place.mission) for one in unread)}
-    notes = tuple(_notes(asked.missions, told))
-    if notes and not rows.bad.any():
-        raise InputError(f"no bad mission can be judged: {'; '.join(notes)}")
+    notes = notes_on(asked.missions, rows, unread)
     ranking = rank_fleet(rows, values=asked.digests.values, diagnoses=found.rows)
     ranking = replace(ranking, notes=(*ranking.notes, *notes))
     return Ranked(ranking, asked.missions, unread)
-
-
-def _notes(found: Sequence[FleetMission], told: set[tuple[str, str]]) -> Iterator[str]:
-    """What keeps missions from counting, or bad ones from having a diagnosis.
-
-    ``told`` are the robots and missions that count, or that could not be read.
-    """
-    bad = [one for one in found if one.is_bad]
-    silent = [one for one in found if (one.place.robot, one.place.mission) not in told]
-    if silent:
-        so_bad = sum(one.is_bad for one in silent)
-        yield f"{many(len(silent), 'mission')} without a comparison, not counted ({so_bad:,} bad)"
-    if bad and not any(one.marks for one in bad):
-        yield "no bad mission has marks, so that none has a diagnosis: say when it went wrong"
 
 
 class Drifts(NamedTuple):

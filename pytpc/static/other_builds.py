@@ -25,8 +25,8 @@ def keys_in(here: StaticInfo, there: StaticInfo) -> dict[str, str]:
     Two are the same if they compare the same parameter in the same way in the same function. If a
     function has several of these, they are told apart by their order, or, if their number differs,
     by their source line. What is still not clear is left out. A key has the line in it, so the same
-    key may be another comparison there; it is the same one if its source line is, too. One whose key
-    is here that of another one, which it is not, gets a key that nothing here has.
+    key may be another comparison there; it is the same one if its source line is, too. One
+    whose key is here that of another one gets a key that nothing here has.
 
     Args:
         here: this build.

@@ -14,9 +14,9 @@ from click.testing import CliRunner, Result
 from fleet_samples import Flight, digest
 
 from pytpc.api.dask_engine import engine
-from pytpc.api.fleet_asking import newest_build, once_each, rank
+from pytpc.api.fleet_asking import newest_build, rank
 from pytpc.api.fleet_judging import spread
-from pytpc.api.fleet_missions import FleetMission, missions
+from pytpc.api.fleet_missions import FleetMission, missions, once_each
 from pytpc.base.errors import InputError
 from pytpc.cli.main import main
 from pytpc.fleet.store import Fleet, Place

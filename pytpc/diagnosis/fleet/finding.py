@@ -199,9 +199,7 @@ def _meant(given: str, names: Iterable[str], robot: str) -> list[str]:
     ]
 
 
-def _had(
-    turn: FoundTurn, had: Sequence[tuple[list[str], object]], values: ParameterValues
-) -> bool:
+def _had(turn: FoundTurn, had: Sequence[tuple[list[str], object]], values: ParameterValues) -> bool:
     """Whether one of each of these parameters had the value then."""
     return all(
         any(_is_value(values.at(name, turn.time_ns), value) for name in meant)

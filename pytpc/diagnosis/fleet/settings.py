@@ -38,8 +38,8 @@ class Settings:
     Attributes:
         parameters: the names; those of ``Rows.parameters`` come first, in their order.
         flags: bool[p], whether the numbers of each are true and false.
-        numbers: float64[v], the different values, nan for what is no number; a limit that is switched
-            off may be infinite.
+        numbers: float64[v], the different values, nan for what is no number; a limit that is off
+            may be infinite.
         texts: what the values are called that are no numbers, by their code.
         together: the codes of the values that a parameter had in one mission, by theirs.
         parameter: int32[e], sorted; ``mission`` int32[e], rising in each parameter.

@@ -247,7 +247,7 @@ class RobotCounts(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class FleetOutliers:
-    """Which robots differ from their sisters: decisions by their chance, settings that matter first.
+    """Which robots differ from their sisters: decisions by chance, settings that matter first.
 
     ``settings`` and ``decisions`` are separate: a robot may be set otherwise on purpose. ``counts``
     has one entry for each robot, the most decisions first. ``tested``
