@@ -139,6 +139,13 @@ def test_only_turns_at_which_a_parameter_had_a_value():
     assert times(TurnQuery(had=(("mode", 1),))) == []
 
 
+def test_the_node_of_a_turn_is_without_the_robots_namespace():
+    log = events([(1, 0, 0, 1, 2), (2, 0, 1, 3, 2)], "/r_1/nav")
+    mission = Recording("m", log, (), 0, ns(10))
+    for robot, node in (("r-1", "/nav"), ("r-2", "/r_1/nav")):
+        assert [one.node for one in turns_in(mission, STATIC, TurnQuery(), robot=robot)] == [node]
+
+
 # Answers call /r-1's parameter /n/speed, and print 0.30000001192092896 as 0.3.
 def test_a_value_is_asked_for_as_answers_print_it():
     known = ParameterValues(

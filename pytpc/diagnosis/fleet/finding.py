@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -138,7 +138,7 @@ def turns_in(
         recording: the mission.
         static_info: what the analysis found, with the names of this mission.
         query: what to look for.
-        robot: its own namespace is taken off the parameters' names.
+        robot: its own namespace is taken off the names of parameters and nodes.
         values: the parameters over time; None takes those of the recording.
     """
     tpcs = Tpcs.of(static_info)
@@ -154,7 +154,11 @@ def turns_in(
             scale = 1.0 if slope is None else abs(slope)
             is_flag = comparison.relation == "flag"
             turns = _turns(recording, (key, parameter, place), np.nan if is_flag else scale)
-            found += [one for one in turns if _asked(one, query) and _had(one, had, known)]
+            found += [
+                replace(one, node=without_robot(one.node, robot))
+                for one in turns
+                if _asked(one, query) and _had(one, had, known)
+            ]
     return tuple(sorted(found, key=lambda one: (one.time_ns, one.key, one.node)))
 
 
