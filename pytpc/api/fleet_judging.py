@@ -37,6 +37,7 @@ JUDGED = pa.schema(
         pa.field("parameter", pa.string()),
         pa.field("log_probability", pa.float64()),
         pa.field("log_none", pa.float64()),
+        pa.field("position", pa.int64()),
     ]
 )
 """A row for each parameter that a mission suspects; missions without a suspect have none."""
@@ -159,6 +160,7 @@ def _judged(job: _Job) -> Judged:
             "parameter": one.parameter,
             "log_probability": log(max(one.probability, _LEAST)),
             "log_none": none,
+            "position": one.position,
         }
         for one in found.suspects
     ]

@@ -61,6 +61,7 @@ def test_the_wrong_parameters_are_first(world):
     found = answer("rank", fleet)
     wrong = {bare(one["parameter"]) for one in truth["culprits"]}
     assert bare(found["suspects"][0]["parameter"]) in wrong
+    assert found["suspects"][0]["mean_position"] >= 1
     assert found["bad"] == sum(one["wrong"] is not None for one in truth["missions"]) or (
         found["bad"] <= sum(bool(one["marks"]) for one in truth["missions"])
     )
