@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import pyarrow as pa
 
 from pytpc.api.dask_engine import Engine
-from pytpc.api.fleet_judging import judged, spread
+from pytpc.api.fleet_judging import judged, notes_on, spread
 from pytpc.api.fleet_missions import (
     EVERY,
     FleetMission,
@@ -21,6 +21,7 @@ from pytpc.api.fleet_missions import (
     Unread,
     build_of,
     missions,
+    once_each,
     opened,
 )
 from pytpc.api.learning import learn
@@ -129,13 +130,13 @@ def ask(
     """
     known = missions(fleet, engine, selection)
     build = newest_build(known.found)
-    found = known.found
+    found, again = once_each(known.found)
     parts = [
         _Part(fleet, found[at : at + _TOGETHER], build, with_values)
         for at in range(0, len(found), _TOGETHER)
     ]
     read = engine.joined(_read, parts, _joined, on_progress)
-    unread = (*known.unread, *read.unread)
+    unread = (*known.unread, *again, *read.unread)
     return Asked(found, build, Digests(read.rows, read.values, unread))
 
 
@@ -227,8 +228,12 @@ def rank(
     """
     asked = ask(fleet, engine, selection, with_values=True, on_progress=on_progress)
     found = judged(fleet, engine, asked.missions, asked.build, on_progress)
-    ranking = rank_fleet(asked.rows, values=asked.digests.values, diagnoses=found.rows)
-    return Ranked(ranking, asked.missions, (*asked.digests.unread, *found.unread))
+    rows = asked.rows
+    unread = (*asked.digests.unread, *found.unread)
+    notes = notes_on(asked.missions, rows, unread)
+    ranking = rank_fleet(rows, values=asked.digests.values, diagnoses=found.rows)
+    ranking = replace(ranking, notes=(*ranking.notes, *notes))
+    return Ranked(ranking, asked.missions, unread)
 
 
 class Drifts(NamedTuple):

@@ -17,6 +17,8 @@ from pytpc.api.dask_engine import Engine
 from pytpc.api.diagnosing import AskedMission
 from pytpc.api.fleet_missions import FleetMission, Unread, build_of, opened, write_folder
 from pytpc.base.errors import InputError
+from pytpc.base.wording import many
+from pytpc.diagnosis.fleet.rows import Rows
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.blame import blame
 from pytpc.diagnosis.thinned import thinned
@@ -35,6 +37,7 @@ JUDGED = pa.schema(
         pa.field("parameter", pa.string()),
         pa.field("log_probability", pa.float64()),
         pa.field("log_none", pa.float64()),
+        pa.field("position", pa.int64()),
     ]
 )
 """A row for each parameter that a mission suspects; missions without a suspect have none."""
@@ -82,6 +85,36 @@ def judged(
     return engine.joined(_judged, jobs, _joined, on_progress)
 
 
+def notes_on(
+    found: Sequence[FleetMission], rows: Rows, unread: Sequence[Unread]
+) -> tuple[str, ...]:
+    """What keeps missions from counting, or bad ones from having a diagnosis.
+
+    Args:
+        found: the missions.
+        rows: the digests; a mission that compared nothing has none.
+        unread: the missions that could not be read, of which others are told.
+
+    Raises:
+        InputError: there are bad missions, but none of them counts.
+    """
+    told = {*rows.places, *((one.place.robot, one.place.mission) for one in unread)}
+    bad = [one for one in found if one.is_bad]
+    silent = [one for one in found if (one.place.robot, one.place.mission) not in told]
+    notes = []
+    if silent:
+        so_bad = sum(one.is_bad for one in silent)
+        what = many(len(silent), "mission")
+        notes.append(f"{what} without a comparison, not counted ({so_bad:,} bad)")
+        if bad and not rows.bad.any():
+            raise InputError(f"no bad mission can be judged: {notes[0]}")
+    if bad and not any(one.marks for one in bad):
+        notes.append(
+            "no bad mission has marks, so that none has a diagnosis: say when it went wrong"
+        )
+    return tuple(notes)
+
+
 def spread(found: Sequence[FleetMission], most: int) -> list[FleetMission]:
     """At most so many missions: of each robot about as many, evenly over its time."""
     robots: defaultdict[str, list[FleetMission]] = defaultdict(list)
@@ -127,6 +160,7 @@ def _judged(job: _Job) -> Judged:
             "parameter": one.parameter,
             "log_probability": log(max(one.probability, _LEAST)),
             "log_none": none,
+            "position": one.position,
         }
         for one in found.suspects
     ]

@@ -160,6 +160,24 @@ def _joined(parts: list[Missions]) -> Missions:
     return Missions(found, tuple(one for part in parts for one in part.unread))
 
 
+def once_each(
+    found: Sequence[FleetMission],
+) -> tuple[tuple[FleetMission, ...], tuple[Unread, ...]]:
+    """The missions, each on its first day only; and those that are there again on another day.
+
+    A mission whose clock says nothing has the day of its files, which a copy may have changed.
+    """
+    first: dict[tuple[str, str], FleetMission] = {}
+    again = []
+    for one in sorted(found, key=lambda one: one.place.day):
+        other = first.setdefault((one.place.robot, one.place.mission), one)
+        if other is not one:
+            why = f"is there on {other.place.day}, too, and counts only then: drop one of both"
+            again.append(Unread(one.place, why))
+    kept = {one.place for one in first.values()}
+    return tuple(one for one in found if one.place in kept), tuple(again)
+
+
 def meant(fleet: Fleet, name: str) -> Place:
     """The mission that a person means by its name in the data set, or by that of its recording.
 

@@ -58,7 +58,8 @@ def tested_json(drifts: FleetDrifts) -> Json:
 def _drift(one: FleetDrift) -> Json:
     found = _fields(one)
     robot = None if one.robot == WHOLE_FLEET else one.robot
-    return {**found, "robot": robot, "clear": found.pop("is_clear")}
+    clear = found.pop("is_clear")
+    return {**found, "robot": robot, "clear": clear}
 
 
 def outliers_json(outliers: FleetOutliers) -> Json:
@@ -66,10 +67,7 @@ def outliers_json(outliers: FleetOutliers) -> Json:
     return {
         "decisions": [_decision(one) for one in outliers.decisions],
         "settings": [_fields(one) for one in outliers.settings],
-        "robots": [
-            {"robot": robot, "decisions": decisions, "settings": settings}
-            for robot, decisions, settings in outliers.counts
-        ],
+        "robots": [one._asdict() for one in outliers.counts],
         "tested": outliers.tested,
         "notes": list(outliers.notes),
     }
@@ -77,7 +75,8 @@ def outliers_json(outliers: FleetOutliers) -> Json:
 
 def _decision(one: OtherDecision) -> Json:
     found = _fields(one)
-    return {**found, "set_otherwise": found.pop("is_set_otherwise")}
+    set_otherwise = found.pop("is_set_otherwise")
+    return {**found, "set_otherwise": set_otherwise}
 
 
 def found_json(found: Sequence[Found]) -> list[Json]:
@@ -91,7 +90,8 @@ def found_json(found: Sequence[Found]) -> list[Json]:
 def mission_json(one: FoundMission) -> Json:
     """A mission without its turns."""
     found = _fields(one)
-    return {**found, "bad": found.pop("is_bad")}
+    bad = found.pop("is_bad")
+    return {**found, "bad": bad}
 
 
 def _fields(one: object) -> Json:

@@ -287,7 +287,7 @@ def _matrix(outliers: FleetOutliers) -> MatrixView:
     weights = Counter(name for _, name in decisions)
     every = Counter(name for _, name in (*decisions, *settings))
     parameters = sorted(every, key=lambda name: (-weights[name], -every[name], name))
-    robots = [robot for robot, own, other in outliers.counts if own or other]
+    robots = [one.robot for one in outliers.counts if one.decisions or one.settings]
     most_robots, most_parameters = _MATRIX
     told = {(one.robot, one.parameter): one for one in outliers.settings}
     # The first of a parameter's comparisons deviates most.

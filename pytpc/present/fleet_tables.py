@@ -223,9 +223,11 @@ def print_outliers(console: Console, outliers: FleetOutliers, top: int) -> None:
         parts += [_indented("What is set otherwise", "bold")]
         parts.append(_listing(console, _SETTINGS, [_cells(*texts) for texts in settings]))
         parts += _rest(len(outliers.settings) - len(settings))
-    differing = [one for one in outliers.counts if one[1] or one[2]]
+    differing = [one for one in outliers.counts if one.decisions or one.settings]
     if differing:
-        counts = [_cells(robot, f"{own:,}", f"{other:,}") for robot, own, other in differing[:top]]
+        counts = [
+            _cells(one.robot, f"{one.decisions:,}", f"{one.settings:,}") for one in differing[:top]
+        ]
         parts += [_indented("Robots", "bold"), _listing(console, _COUNTS, counts)]
         parts += [*_rest(len(differing) - len(counts)), _indented(_OFF, "dim")]
     _print(console, [*parts, *_notes(outliers.notes)])

@@ -25,7 +25,8 @@ def keys_in(here: StaticInfo, there: StaticInfo) -> dict[str, str]:
     Two are the same if they compare the same parameter in the same way in the same function. If a
     function has several of these, they are told apart by their order, or, if their number differs,
     by their source line. What is still not clear is left out. A key has the line in it, so the same
-    key may be another comparison there; it is the same one if its source line is, too.
+    key may be another comparison there; it is the same one if its source line is, too. One
+    whose key is here that of another one gets a key that nothing here has.
 
     Args:
         here: this build.
@@ -45,6 +46,8 @@ def keys_in(here: StaticInfo, there: StaticInfo) -> dict[str, str]:
             paired = _paired(left, free.get(alike, []))
             found |= paired
             taken |= set(paired.values())
+    lost = taken & there.comparisons.keys() - same - found.keys()
+    found |= {key: f"{key}-of-another-build" for key in lost}
     return {key: other for key, other in found.items() if key != other}
 
 

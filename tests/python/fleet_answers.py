@@ -15,6 +15,7 @@ from pytpc.diagnosis.results.fleet import (
     FoundTurn,
     OtherDecision,
     OtherSetting,
+    RobotCounts,
     ValueInMissions,
 )
 
@@ -129,7 +130,7 @@ def outliers(
 ) -> FleetOutliers:
     robots = sorted({one.robot for one in (*settings, *decisions)} | {"r1", "r2", "r3"})
     counts = tuple(
-        (
+        RobotCounts(
             robot,
             sum(one.robot == robot for one in decisions),
             sum(one.robot == robot for one in settings),

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from click.testing import CliRunner, Result
+from fleet_samples import Flight, digest
 
 from pytpc.api.dask_engine import engine
 from pytpc.api.fleet_asking import newest_build, rank
 from pytpc.api.fleet_judging import spread
-from pytpc.api.fleet_missions import FleetMission, missions
+from pytpc.api.fleet_missions import FleetMission, missions, once_each
 from pytpc.base.errors import InputError
 from pytpc.cli.main import main
 from pytpc.fleet.store import Fleet, Place
+from pytpc.fleet.tables import COMPARISONS, MISSIONS
 from pytpc_evaluation.fleet.generating import generate
 from pytpc_evaluation.fleet.world import WorldSettings
 
@@ -57,6 +61,7 @@ def test_the_wrong_parameters_are_first(world):
     found = answer("rank", fleet)
     wrong = {bare(one["parameter"]) for one in truth["culprits"]}
     assert bare(found["suspects"][0]["parameter"]) in wrong
+    assert found["suspects"][0]["mean_position"] >= 1
     assert found["bad"] == sum(one["wrong"] is not None for one in truth["missions"]) or (
         found["bad"] <= sum(bool(one["marks"]) for one in truth["missions"])
     )
@@ -140,9 +145,54 @@ def test_without_a_bad_mission(world):
         newest_build(())
 
 
+def stored(fleet: Fleet, number: int, verdict: str, *, is_silent: bool = False) -> None:
+    """A mission without reports; p0 is 0.9 in bad ones. A silent one compared nothing."""
+    flight = Flight(f"m{number}", day=1 + number, verdict=verdict)
+    row = digest(flight, thresh=0.9 if verdict == "bad" else 0.5)
+    of_mission = {field.name: row.get(field.name, 0) for field in MISSIONS}
+    words = dict.fromkeys(("name", "source", "stamp", "build", "keep", "tpc"), "")
+    of_mission |= {**words, "seconds": 60.0, "notes": [], "files": []}
+    row |= {field.name: 0 for field in COMPARISONS if field.name not in row}
+    rows = [] if is_silent else [row]
+    fleet.write(
+        Place(flight.robot, row["day"], flight.mission),
+        {
+            "missions": pa.Table.from_pylist([of_mission], schema=MISSIONS),
+            "comparisons": pa.Table.from_pylist(rows, schema=COMPARISONS),
+        },
+    )
+
+
+def test_missions_that_do_not_count_are_said(tmp_path: Path):
+    fleet = Fleet(str(tmp_path))
+    fleet.begin()
+    stored(fleet, 0, "bad", is_silent=True)
+    stored(fleet, 1, "good")
+    with engine(workers=1) as own:
+        with pytest.raises(InputError, match="1 mission without a comparison, not counted"):
+            rank(fleet, own)
+        stored(fleet, 2, "bad")
+        found = rank(fleet, own).ranking
+    assert (found.bad, found.good) == (1, 1)
+    assert found.notes == (
+        "1 mission without a comparison, not counted (1 bad)",
+        "no bad mission has marks, so that none has a diagnosis: say when it went wrong",
+    )
+
+
 def flown(robot: str, number: int) -> FleetMission:
     place = Place(robot, "2026-11-30", f"m{number:03}")
     return FleetMission(place, "m", "", "b", "bad", "edges", "1", number, number, 1, 1, 1, 1.0, ())
+
+
+def test_a_mission_on_two_days_counts_once():
+    one, other = flown("a", 1), flown("b", 1)
+    again = replace(one, place=one.place._replace(day="2026-12-02"))
+    found, told = once_each((again, other, one))
+    assert found == (other, one)
+    assert [(place, why) for place, why in told] == [
+        (again.place, "is there on 2026-11-30, too, and counts only then: drop one of both")
+    ]
 
 
 # Of robots with 1, 9 and 90 missions, nine are 1, 4 and 4, from the middle of equal parts.

@@ -109,6 +109,21 @@ def test_over_the_fleet_only_days_of_one_robot_are_compared():
     assert found[0].is_clear
 
 
+# Three robots fall by 1 a day from 10 on March 20 to 6 on March 24; a fourth one does the same by a
+# clock that is behind. Ten times four days ahead is May 3: p1, which would be 0 on May 23, is too
+# far off, whatever that clock says.
+def test_a_robot_whose_clock_is_off_does_not_widen_the_fleets_series():
+    rows = []
+    for robot, first in (("a", 20), ("b", 20), ("c", 20), ("d", 1)):
+        for number, level, step in ((0, 10.0, 1.0), (1, 12.8, 0.2)):
+            least = [level - step * n for n in range(5)]
+            rows += daily(least, robot=robot, first=first, number=number)
+    first, second = (one for one in drifts(*rows).drifts if one.robot == WHOLE_FLEET)
+    assert (first.since, first.until, first.days) == ("2026-03-20", "2026-03-24", 5)
+    assert (first.now, first.turns_on) == (pytest.approx(6.0), "2026-03-30")
+    assert (second.where.parameter, second.turns_on) == ("/nav/p1", None)
+
+
 # A robot flew in the first week at 10, its sister in the second at 5: nothing fell.
 def test_another_level_of_another_robot_is_no_drift():
     rng = np.random.default_rng(5)

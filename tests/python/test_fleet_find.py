@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 from fleet_samples import Flight, digest, table
@@ -107,6 +108,19 @@ def test_turns_of_a_mission(query, expected):
     assert times(query) == expected
 
 
+# Two objects of one class, of which the second turns at 4 s.
+def test_turns_of_one_instance():
+    def turned(asked):
+        return [one.time_ns / 1e9 for one in turns_in(mission, static, TurnQuery(key=asked))]
+
+    own = [f"{key(0)}#{number}" for number in (1, 2)]
+    static = static_info(*(replace(comparison(0, "~a"), key=one) for one in own))
+    log = events([(1, 0, 0, 1, 2), (2, 0, 1, 3, 2), (3, 1, 0, 1, 2), (4, 1, 1, 3, 2)])
+    mission = Recording("m", replace(log, keys=tuple(own)), (), 0, ns(10))
+    assert turned(own[1]) == [4]
+    assert turned(key(0)) == [2, 4]
+
+
 def test_a_turn_has_its_values():
     first, second, third = turns_in(MISSION, STATIC, TurnQuery())
     assert (first.value, first.threshold, first.margin, first.result) == (3.0, 2.0, 1.0, True)
@@ -123,6 +137,25 @@ def test_only_turns_at_which_a_parameter_had_a_value():
     assert times(TurnQuery(had=(("on", 1),)), values=known) == []
     assert times(TurnQuery(had=(("nobody", 1),)), values=known) == []
     assert times(TurnQuery(had=(("mode", 1),))) == []
+
+
+def test_the_node_of_a_turn_is_without_the_robots_namespace():
+    log = events([(1, 0, 0, 1, 2), (2, 0, 1, 3, 2)], "/r_1/nav")
+    mission = Recording("m", log, (), 0, ns(10))
+    for robot, node in (("r-1", "/nav"), ("r-2", "/r_1/nav")):
+        assert [one.node for one in turns_in(mission, STATIC, TurnQuery(), robot=robot)] == [node]
+
+
+# Answers call /r-1's parameter /n/speed, and print 0.30000001192092896 as 0.3.
+def test_a_value_is_asked_for_as_answers_print_it():
+    known = ParameterValues(
+        [SetValue(0, "/r_1/n/speed", 0.30000001192092896), SetValue(0, "/r_1/n/big", 10**400)]
+    )
+    asked = TurnQuery(had=(("/n/speed", 0.3),))
+    assert times(asked, values=known, robot="r-1") == [2, 4, 6]
+    assert times(asked, values=known, robot="r-2") == []
+    assert times(TurnQuery(had=(("speed", 0.3001),)), values=known, robot="r-1") == []
+    assert times(TurnQuery(had=(("big", 1.0),)), values=known, robot="r-1") == []
 
 
 def test_a_turn_to_what_is_no_number():

@@ -28,7 +28,7 @@ def test_a_value_that_no_sister_has_stands_out():
     assert len(found.settings) == 1
     assert (one.robot, one.parameter, one.value, one.usual) == ("d", "/nav/p0", "0.9", "0.5")
     assert (one.sisters, one.share, one.score) == (3, 1.0, None)
-    assert found.counts == (("d", 1, 0), ("a", 0, 0), ("b", 0, 0), ("c", 0, 0))
+    assert found.counts == (("d", 0, 1), ("a", 0, 0), ("b", 0, 0), ("c", 0, 0))
 
 
 # Sisters of e: 1, 2, 3, 4: median 2.5, deviations 1.5, 0.5, 0.5, 1.5: 1 * 1.4826. (12 - 2.5) /
@@ -38,6 +38,50 @@ def test_among_different_numbers_one_that_is_far_off_stands_out():
     assert [(one.robot, one.value) for one in found.settings] == [("e", "12")]
     assert found.settings[0].score == pytest.approx(9.5 / 1.4826)
     assert FAR > 2.5 / 1.4826
+
+
+# Three of the five sisters of f have one value, so that their median absolute deviation is 0. The
+# mean one is (0.02 + 0 + 0 + 0 + 0.03) / 5 = 0.01. (1 - 0.1) / (1.2533 * 0.01) = 71.8.
+def test_a_value_far_off_sisters_that_mostly_have_one():
+    found = fleet({"a": 0.98, "b": 1.0, "c": 1.0, "d": 1.0, "e": 1.03, "f": 0.1})
+    assert [(one.robot, one.usual) for one in found.settings] == [("f", "1")]
+    assert found.settings[0].score == pytest.approx(0.9 / (1.2533 * 0.01))
+
+
+# A robot is a little off in p0 to p11, and has a tenth of the usual value in p12.
+def test_what_is_furthest_off_is_first():
+    rows = [
+        digest(Flight(f"{robot}{n}", robot, 1 + n), number, thresh)
+        for robot in "abcd"
+        for n in range(3)
+        for number in range(13)
+        for thresh in [(0.1 if number == 12 else 0.98) if robot == "d" else 1.0]
+    ]
+    found = fleet_outliers(Rows.of(table(rows)))
+    assert len(found.settings) == 13
+    assert found.settings[0].parameter == "/nav/p12"
+    # A small difference with which the robot decides otherwise matters more.
+    for row in rows:
+        if row["parameter"] == "/nav/p3":
+            row["turns"] = 50 if row["robot"] == "d" else 5
+    more = [row | {"mission": f"{row['mission']}-{n}"} for row in rows for n in range(4)]
+    found = fleet_outliers(Rows.of(table(more)))
+    assert [(one.robot, one.where.parameter) for one in found.decisions] == [("d", "/nav/p3")]
+    assert [one.parameter for one in found.settings[:2]] == ["/nav/p3", "/nav/p12"]
+
+
+# All have a value of their own, so that none stands out; that of d may be why it decides otherwise.
+def test_a_decision_says_that_the_value_is_none_of_the_sisters():
+    values = {"a": 0.5, "b": 0.6, "c": 0.7, "d": 0.8}
+    found = fleet(values, 10, turns=lambda robot, n: (50 if robot == "d" else 5) + n)
+    assert found.settings == ()
+    assert [(one.robot, one.is_set_otherwise) for one in found.decisions] == [("d", True)]
+
+
+def test_an_infinite_limit_has_no_distance():
+    inf = {"thresholds": lambda robot, n: 0 if robot == "d" else 1}
+    found = fleet({"a": 0.5, "b": 0.5, "c": 0.5, "d": math.inf}, **inf)
+    assert [(one.value, one.usual, one.score) for one in found.settings] == [("inf", "0.5", None)]
 
 
 def test_flags_have_no_distance():
@@ -75,7 +119,8 @@ def test_a_decision_that_differs_stands_out():
     assert found.tested == 9
     assert one.chance == pytest.approx(9 * 2 / math.comb(30, 10))
     assert not one.is_set_otherwise
-    assert found.counts[0] == ("c", 0, 1)
+    assert found.counts[0] == ("c", 1, 0)
+    assert (found.counts[0].decisions, found.counts[0].settings) == (1, 0)
     # Its sisters' medians differ by 0.005, but their missions by more: 0.025 * 1.4826 / sqrt(10).
     assert one.score == pytest.approx(0.6025 / (1.4826 * 0.025 / math.sqrt(10)), rel=1e-6)
 
@@ -104,6 +149,14 @@ def test_a_robot_with_few_missions_is_not_judged():
     ]
     rows += [digest(Flight(f"c{n}", "c", 1 + n), true_share=0.0) for n in range(2)]
     assert fleet_outliers(Rows.of(table(rows))).tested == 0
+
+
+def test_robots_with_too_few_missions_are_named():
+    found = fleet(dict.fromkeys("abcde", 0.5), 1)
+    assert found.notes == (
+        "fewer than 3 missions, so that no decision is judged: a, b, c and 2 more",
+    )
+    assert fleet(dict.fromkeys("abc", 0.5), 3).notes == ()
 
 
 def test_what_differs_from_sisters_without_any_spread():

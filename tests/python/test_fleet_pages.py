@@ -446,15 +446,20 @@ def test_json_round_trip() -> None:
     assert [one["robot"] for one in document["drifts"]] == ["r1", None]
     assert [one["clear"] for one in document["drifts"]] == [True, True]
     assert document["drifts"][0]["now"] is None
+    assert "is_clear" not in document["drifts"][0]
     assert document["drifts"][0]["where"]["place"] == "src/guard.cpp:12"
 
-    document = json.loads(plain_json(outliers_json(outliers((setting(),), (decision(),)))))
+    document = json.loads(
+        plain_json(outliers_json(outliers((setting(), setting(parameter="~b")), (decision(),))))
+    )
     assert document["decisions"][0]["set_otherwise"] is False
+    assert "is_set_otherwise" not in document["decisions"][0]
     assert document["settings"][0]["usual"] == "1"
-    assert document["robots"][2] == {"robot": "r3", "decisions": 1, "settings": 1}
+    assert document["robots"][2] == {"robot": "r3", "decisions": 1, "settings": 2}
 
     (document,) = json.loads(plain_json(found_json([(mission(), [turn(2)])])))
     assert (document["bad"], document["least"]) == (True, 0.05)
+    assert "is_bad" not in document
     assert document["turned"][0]["time_ns"] == START_NS + 2_000_000_000
 
 

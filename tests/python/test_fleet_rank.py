@@ -6,6 +6,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 from fleet_samples import Flight, digest, table
+from mission_samples import key
 
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.fleet.behaviour_evidence import MOST, differing, worth
@@ -113,6 +114,23 @@ def test_missions_without_a_known_value_say_little():
     assert many == pytest.approx(UNCHANGED / 2)
     known = by_values((2, True), (1, False))
     assert by_values((2, True), (math.nan, True), (1, False)) < known
+
+
+# What is compared only when something has gone wrong is known in bad missions alone.
+def test_a_value_that_is_known_in_bad_missions_only_says_next_to_nothing():
+    assert abs(by_values(*[(1, True)] * 10, *[(math.nan, False)] * 30)) < 1
+    rows = fleet()
+    recovery = [
+        row | {"key": key(9), "parameter": "/nav/retry"}
+        for row in rows
+        if row["verdict"] == "bad" and row["parameter"] == "/nav/p3"
+    ]
+    rows = [row for row in rows if row["parameter"] != "/nav/p0"]
+    found = rank_fleet(Rows.of(table(rows + recovery)))
+    assert found.accused is None
+    (one,) = [one for one in found.suspects if one.parameter == "/nav/retry"]
+    assert one.reason == "its value is known in no good mission"
+    assert one.probability < 0.5
 
 
 def test_without_good_missions_values_say_next_to_nothing():
@@ -387,6 +405,25 @@ def test_a_gain_that_no_comparison_reports_may_be_the_cause():
     # only names a mission.
     assert found.accused is None
     assert [one.parameter for one in found.suspects[1:]] == ["/nav/p0", "/nav/p1"]
+
+
+# A limit that is switched off in the bad missions is a number above all others.
+@pytest.mark.parametrize("is_recorded", [True, False])
+def test_an_infinite_limit_may_be_the_cause(is_recorded):
+    flights = [Flight(f"m{n}", day=1 + n, verdict="bad" if n < 4 else "good") for n in range(12)]
+    off = {} if is_recorded else {"thresh_last": math.inf, "thresholds": 0}
+    rows = [
+        digest(one, number) | (off if number == 0 and one.verdict == "bad" else {})
+        for one in flights
+        for number in (0, 1)
+    ]
+    values = recorded(flights, "/nav/p0", lambda n: math.inf if n < 4 else 5)
+    for one in values:
+        one["value"] = one["value"].replace("inf", "Infinity")
+    given = pa.Table.from_pylist(values) if is_recorded else None
+    found = rank_fleet(Rows.of(table(rows)), values=given)
+    assert found.accused == "/nav/p0"
+    assert [one.text for one in found.suspects[0].values] == ["inf", "5" if is_recorded else "0.5"]
 
 
 def test_notes_say_what_is_missing():

@@ -75,6 +75,17 @@ def test_instances_of_one_name_are_counted_in_each_mission():
     assert found.turns.tolist() == [1, 3, 5, 2, 4]
 
 
+# The robot is called as a namespace that only one of its drivers has.
+def test_nodes_with_one_name_without_the_robots_namespace_are_two():
+    rows = [
+        digest(Flight("m", "robot"), node=node, parameter="~limit", turns=turns)
+        for node, turns in (("/robot/driver", 7), ("/driver", 3))
+    ]
+    found = Rows.of(table(rows))
+    assert [(one.node, one.number) for one in found.series] == [("/driver", 0), ("/driver", 1)]
+    assert found.turns.tolist() == [3, 7]
+
+
 # 12 turns in 30 s are 24 a minute. The median margin has the sign of the usual result.
 def test_measures_of_a_row():
     rows = Rows.of(table([digest(Flight("m"), turns=12, seconds=30.0, true_share=0.4)]))

@@ -266,6 +266,18 @@ def test_a_key_that_is_another_comparison_there_is_not_trusted():
     assert keys_in(here, there) == {key(12): key(14), key(14): key(16)}
 
 
+# One line was added above, and what was at 11 is gone: what was at 10 has its key now.
+def test_a_comparison_that_is_gone_does_not_keep_a_key_that_another_one_has_here():
+    here = static_info(comparison(11, "~a", lineno=11, source_code="if (x > a_)"))
+    there = static_info(
+        comparison(10, "~a", lineno=10, source_code="if (x > a_)"),
+        comparison(11, "~a", lineno=11, source_code="if (y > a_)"),
+    )
+    found = keys_in(here, there)
+    assert found[key(10)] == key(11)
+    assert found[key(11)] not in here.comparisons
+
+
 # The keys of today are those of the other build, moved on by one: renamed twice, 0 would be 2.
 def test_the_keys_of_another_build_are_renamed_once(robot):
     names = ("~max_speed", "~max_height", "~most")

@@ -4,7 +4,8 @@ Per robot and comparison, the medians of each day form a series: of the least ma
 missions, as long as the comparison never turns, and of their median margins. Another setting begins
 a new series, and only the last one says what will come. Over the fleet the series of all robots
 are judged together; only days of one robot are compared, so that it does not matter which robots
-flew on a day.
+flew on a day. A robot that flew at another time than most of its sisters, as by a clock that is
+off, does not count there.
 """
 
 from __future__ import annotations
@@ -140,7 +141,8 @@ def _all_series(rows: Rows, days: Int64s) -> Iterator[_Days]:
             one = _Days(name, own // robots, measure, part, threshold[own], turns_of[own])
             alike.setdefault(one.which, []).append(one)
             yield one
-        for which, several in alike.items():
+        for which, own_series in alike.items():
+            several = _at_one_time(own_series)
             if len(several) > 1:
                 settings = {one.threshold for one in several}
                 yield _Days(
@@ -151,6 +153,19 @@ def _all_series(rows: Rows, days: Int64s) -> Iterator[_Days]:
                     settings.pop() if len(settings) == 1 else np.nan,
                     sum(one.turned for one in several),
                 )
+
+
+def _at_one_time(series: list[_Days]) -> list[_Days]:
+    """Those whose time overlaps with that of half of the others, if most do; else all.
+
+    The days of a robot whose clock is off say nothing of when its sisters' margins will be 0.
+    """
+    begin, end = np.array([(one.days[0], one.days[-1]) for one in series]).T
+    overlaps = (begin[:, None] <= end) & (begin <= end[:, None])
+    kept = 2 * (overlaps.sum(axis=1) - 1) >= len(series) - 1
+    if 2 * np.count_nonzero(kept) <= len(series):
+        return series
+    return [one for one, is_kept in zip(series, kept.tolist(), strict=True) if is_kept]
 
 
 def _measured(columns: dict[str, Floats], never: Bools) -> Iterator[tuple[Measure, Floats]]:

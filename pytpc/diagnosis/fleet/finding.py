@@ -6,9 +6,10 @@ when it was: `turns_in`.
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -25,6 +26,7 @@ from pytpc.recording.parameter_values import ParameterValues
 from pytpc.static.parameters import base_key, same_parameter
 from pytpc.static.static_info import StaticInfo
 
+_BITS = 24
 _WITH_LINE = re.compile(r":[0-9]+\Z")
 
 
@@ -35,7 +37,7 @@ class TurnQuery:
     Attributes:
         place: ``file:line`` or ``file``; the end of a path is enough.
         parameter: a name as people give it, see `same_parameter`.
-        key: of a comparison in the source.
+        key: of a comparison; with the number of an instance only that one in each mission.
         within: the largest margin, in the unit of the comparison's margins.
         low, high: the range of the compared value.
         had: names of parameters, and the values that they must have had at the turn.
@@ -51,11 +53,16 @@ class TurnQuery:
 
     def names(self, key: str, parameter: str, place: str) -> bool:
         """Whether it asks for a comparison, by its ``file:line``."""
-        if self.key and base_key(key) != base_key(self.key):
+        if self.key and not _is_key(key, self.key):
             return False
         if self.place and not _is_at(place, self.place):
             return False
         return not self.parameter or same_parameter(self.parameter, parameter)
+
+
+def _is_key(key: str, asked: str) -> bool:
+    """Whether a key is asked for; without a number it is all instances."""
+    return asked in (key, base_key(key)) or (key == base_key(key) == base_key(asked))
 
 
 def find_missions(rows: Rows, query: TurnQuery) -> tuple[FoundMission, ...]:
@@ -131,11 +138,12 @@ def turns_in(
         recording: the mission.
         static_info: what the analysis found, with the names of this mission.
         query: what to look for.
-        robot: its own namespace is taken off the parameters' names.
+        robot: its own namespace is taken off the names of parameters and nodes.
         values: the parameters over time; None takes those of the recording.
     """
     tpcs = Tpcs.of(static_info)
     known = ParameterValues(recording.values) if values is None else values
+    had = [(_meant(name, known.names(), robot), value) for name, value in query.had]
     found: list[FoundTurn] = []
     for code, key in enumerate(tpcs.keys):
         comparison = static_info.comparisons[key]
@@ -146,7 +154,11 @@ def turns_in(
             scale = 1.0 if slope is None else abs(slope)
             is_flag = comparison.relation == "flag"
             turns = _turns(recording, (key, parameter, place), np.nan if is_flag else scale)
-            found += [one for one in turns if _asked(one, query, known)]
+            found += [
+                replace(one, node=without_robot(one.node, robot))
+                for one in turns
+                if _asked(one, query) and _had(one, had, known)
+            ]
     return tuple(sorted(found, key=lambda one: (one.time_ns, one.key, one.node)))
 
 
@@ -175,17 +187,41 @@ def _turns(recording: Recording, named: tuple[str, str, str], scale: float) -> I
         )
 
 
-def _asked(turn: FoundTurn, query: TurnQuery, values: ParameterValues) -> bool:
+def _asked(turn: FoundTurn, query: TurnQuery) -> bool:
     if query.within is not None and (turn.margin is None or turn.margin > query.within):
         return False
     is_limited = query.low > -np.inf or query.high < np.inf
-    if is_limited and not query.low <= turn.value <= query.high:
+    return not is_limited or query.low <= turn.value <= query.high
+
+
+def _meant(given: str, names: Iterable[str], robot: str) -> list[str]:
+    """The parameters that a person can mean, who may leave out the robot's namespace."""
+    return [
+        one
+        for one in names
+        if same_parameter(given, one) or same_parameter(given, without_robot(one, robot))
+    ]
+
+
+def _had(turn: FoundTurn, had: Sequence[tuple[list[str], object]], values: ParameterValues) -> bool:
+    """Whether one of each of these parameters had the value then."""
+    return all(
+        any(_is_value(values.at(name, turn.time_ns), value) for name in meant)
+        for meant, value in had
+    )
+
+
+def _is_value(one: object, asked: object) -> bool:
+    """Whether they are one value; true and 1 are different.
+
+    Numbers that a 32-bit float does not tell apart are the same, as in `Settings`: answers print
+    them so.
+    """
+    if isinstance(one, bool) != isinstance(asked, bool):
         return False
-    return all(_had(values, name, value, turn.time_ns) for name, value in query.had)
-
-
-def _had(values: ParameterValues, name: str, value: object, time_ns: int) -> bool:
-    """Whether a parameter that ``name`` can mean had the value; true and 1 are different."""
-    meant = [one for one in values.names() if same_parameter(name, one)]
-    then = [values.at(one, time_ns) for one in meant]
-    return any(one == value and isinstance(one, bool) == isinstance(value, bool) for one in then)
+    if isinstance(one, float | int) and isinstance(asked, float | int):
+        try:
+            return math.isclose(one, asked, rel_tol=2.0**-_BITS)
+        except OverflowError:
+            return one == asked
+    return one == asked

@@ -3,7 +3,10 @@
 Settings are facts: a robot has, in most of its missions, a value that its sisters do not have. They
 stand out if ``SHARE`` of the sisters have one other value; or, where the values of all differ, if a
 number is more than ``FAR`` median absolute deviations off those of the sisters (the robust z score
-of Iglewicz and Hoaglin 1993), beyond all of them.
+of Iglewicz and Hoaglin 1993), beyond all of them. Where more than half of the sisters have one
+value that deviation is 0, and the mean absolute one counts. Settings with which the robot also
+decides otherwise come first, then those that are further off: of a fleet in which each robot has
+settings of its own, most are a little off.
 
 Decisions are measured (`behaviour_evidence.MEASURES`), and must be off in two ways: the median over
 the robot's missions by more than ``FAR`` deviations from the medians of the sisters; and its
@@ -26,7 +29,12 @@ from pytpc.diagnosis.fleet.group_medians import group_medians
 from pytpc.diagnosis.fleet.rank_sum import each_against_rest
 from pytpc.diagnosis.fleet.rows import Rows
 from pytpc.diagnosis.fleet.settings import Settings
-from pytpc.diagnosis.results.fleet import FleetOutliers, OtherDecision, OtherSetting
+from pytpc.diagnosis.results.fleet import (
+    FleetOutliers,
+    OtherDecision,
+    OtherSetting,
+    RobotCounts,
+)
 
 FEWEST_ROBOTS = 3
 """Of two robots that differ nobody knows which is the other one."""
@@ -44,6 +52,8 @@ MOST_SCORE = 99.0
 
 _SIGMA = 1.4826
 """The standard deviation of a normal distribution, in median absolute deviations."""
+_MEAN_SIGMA = 1.2533
+"""The same in mean absolute deviations."""
 _NAMED = 3
 
 
@@ -69,30 +79,68 @@ def fleet_outliers(rows: Rows, settings: Settings | None = None) -> FleetOutlier
         alone = listed([rows.robots[one] for one in robots], _NAMED) or "none"
         note = f"robots: {alone}; it takes {FEWEST_ROBOTS} to tell which one differs"
         return FleetOutliers((), (), (), 0, (note,))
-    other = sorted(_settings(rows, settings), key=_setting_order)
-    set_otherwise = frozenset((one.robot, one.parameter) for one in other)
-    decisions, tested = _decisions(rows, set_otherwise)
-    set_so = Counter(one.robot for one in other)
+    other = list(_settings(rows, settings))
+    decisions, tested = _decisions(rows, _own_values(rows, settings))
+    matter = frozenset((one.robot, one.where.parameter) for one in decisions)
+    other.sort(key=lambda one: ((one.setting.robot, one.setting.parameter) not in matter, one.rank))
+    set_so = Counter(one.setting.robot for one in other)
     decided = Counter(one.robot for one in decisions)
     names = [rows.robots[one] for one in robots]
-    counts = [(name, set_so[name], decided[name]) for name in names]
-    counts.sort(key=lambda one: (-one[2], -one[1], one[0]))
-    return FleetOutliers(tuple(other), tuple(decisions), tuple(counts), tested, ())
+    counts = [RobotCounts(name, decided[name], set_so[name]) for name in names]
+    counts.sort(key=lambda one: (-one.decisions, -one.settings, one.robot))
+    return FleetOutliers(
+        tuple(one.setting for one in other),
+        tuple(decisions),
+        tuple(counts),
+        tested,
+        tuple(_notes(rows)),
+    )
 
 
-def _setting_order(one: OtherSetting) -> tuple[float, float, str, str]:
-    return -one.share, -(one.score or 0.0), one.parameter, one.robot
+def _notes(rows: Rows) -> Iterator[str]:
+    few = np.flatnonzero(np.bincount(rows.robot) < FEWEST_MISSIONS)
+    few = np.intersect1d(few, rows.robot)
+    if few.size:
+        names = listed([rows.robots[one] for one in few.tolist()], _NAMED)
+        yield f"fewer than {FEWEST_MISSIONS} missions, so that no decision is judged: {names}"
 
 
-def _settings(rows: Rows, settings: Settings) -> Iterator[OtherSetting]:
+class _Set(NamedTuple):
+    """A setting, and how far it is off: from 0 to 1."""
+
+    setting: OtherSetting
+    off: float
+
+    @property
+    def rank(self) -> tuple[float, float, str, str]:
+        one = self.setting
+        return -self.off, -one.share, one.parameter, one.robot
+
+
+def _each(rows: Rows, settings: Settings) -> Iterator[tuple[int, Int64s, Int32s]]:
+    """The parameters that enough robots have, and differ in; the robots, and the value of each."""
     robot_of = rows.robot[settings.mission]
     for parameter in range(len(settings.parameters)):
         own = settings.entries(parameter)
         robot, value = _usual_values(robot_of[own], settings.value[own])
-        if robot.size < FEWEST_ROBOTS or not np.any(value != value[0]):
-            continue
+        if robot.size >= FEWEST_ROBOTS and np.any(value != value[0]):
+            yield parameter, robot, value
+
+
+def _own_values(rows: Rows, settings: Settings) -> frozenset[tuple[str, str]]:
+    """The robots and parameters whose value fewer than half of the sisters have."""
+    return frozenset(
+        (rows.robots[one], settings.parameters[parameter])
+        for parameter, robot, value in _each(rows, settings)
+        for one, own in zip(robot.tolist(), value.tolist(), strict=True)
+        if 2 * (np.count_nonzero(value == own) - 1) < value.size - 1
+    )
+
+
+def _settings(rows: Rows, settings: Settings) -> Iterator[_Set]:
+    for parameter, robot, value in _each(rows, settings):
         numbers = settings.numbers[value]
-        is_scale = not settings.flags[parameter] and not np.isnan(numbers).any()
+        is_scale = not settings.flags[parameter] and bool(np.isfinite(numbers).all())
         for place in range(robot.size):
             rest = np.delete(value, place)
             codes, counts = np.unique(rest, return_counts=True)
@@ -101,7 +149,7 @@ def _settings(rows: Rows, settings: Settings) -> Iterator[OtherSetting]:
             alike = share >= SHARE and value[place] != usual
             if not alike and not (share < SHARE and score is not None and score > FAR):
                 continue
-            yield OtherSetting(
+            setting = OtherSetting(
                 robot=rows.robots[int(robot[place])],
                 parameter=settings.parameters[parameter],
                 value=settings.setting(parameter, int(value[place])).text,
@@ -110,6 +158,14 @@ def _settings(rows: Rows, settings: Settings) -> Iterator[OtherSetting]:
                 share=share,
                 score=score,
             )
+            yield _Set(setting, _apart(numbers, place) if is_scale else 1.0)
+
+
+def _apart(numbers: Floats, place: int) -> float:
+    """By which part of the larger one a number and the sisters' median differ; 1 at most."""
+    own, usual = float(numbers[place]), float(np.median(np.delete(numbers, place)))
+    largest = max(abs(own), abs(usual))
+    return min(1.0, abs(own - usual) / largest) if largest else 0.0
 
 
 def _usual_values(robot: Int32s, value: Int32s) -> tuple[Int64s, Int32s]:
@@ -134,7 +190,8 @@ def _score(numbers: Floats, place: int) -> float | None:
 
 def _sisters(values: Floats) -> _Sisters:
     median = float(np.median(values))
-    spread = _SIGMA * float(np.median(np.abs(values - median)))
+    away = np.abs(values - median)
+    spread = _SIGMA * float(np.median(away)) or _MEAN_SIGMA * float(away.mean())
     return _Sisters(median, spread, float(values.min()), float(values.max()))
 
 

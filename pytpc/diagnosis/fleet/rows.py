@@ -87,7 +87,7 @@ class Rows:
         seconds: float64[n], for how long it was evaluated.
         true_share: float64[n], of these seconds.
         was_true, was_false: bool[n], whether its result ever was.
-        thresh: float64[n], the last threshold; nan where it had several or no finite one.
+        thresh: float64[n], the threshold, which may be infinite; nan where it had several, or none.
         value_low, value_high: float64[n], the range of the compared values.
         least, median: float64[n], of the margins, in the unit of the comparison; nan without one.
     """
@@ -276,7 +276,8 @@ def _rows(table: pa.Table) -> Rows:
     nodes, node = _without_robots(*words["node"], own)
     parameters, parameter = _without_robots(*words["parameter"], own)
     keys, base = _sorted(*words["key"], base_key)
-    order, which, starts = _series(mission, (base, node, parameter), words["key"])
+    own_names = [_sorted(*words[name]) for name in ("key", "node", "parameter")]
+    order, which, starts = _series(mission, (base, node, parameter), own_names)
     lineno = _whole(table, "lineno")
     said = {name: words[name] for name in ("file", "relation", *_MORE_WORDS)}
     # Rows are sorted by comparison, then by mission: the last one is that of the newest mission.
@@ -295,7 +296,8 @@ def _rows(table: pa.Table) -> Rows:
     )
     values = {name: numbers_of(table, name)[order] for name in _NUMBERS}
     values |= {name: numbers_of(table, name, maybe=True)[order] for name in _MAYBE}
-    thresh, constant = values.pop("thresh_last"), (_whole(table, "thresholds") == 1)[order]
+    thresh, finite = values.pop("thresh_last"), _whole(table, "thresholds")[order]
+    constant = np.where(np.isfinite(thresh), finite == 1, finite == 0)
     turns = _whole(table, "turns")[order]
     share = values["true_share"]
     begins, ends = (_truths(table, name)[order] for name in _TRUTHS)
@@ -316,7 +318,7 @@ def _rows(table: pa.Table) -> Rows:
         turns=frozen(turns),
         was_true=frozen(begins | ends | (share > 0) | (turns > 0)),
         was_false=frozen(~begins | ~ends | (share < 1) | (turns > 0)),
-        thresh=frozen(np.where(constant & np.isfinite(thresh), thresh, np.nan)),
+        thresh=frozen(np.where(constant, thresh, np.nan)),
         **{name: frozen(column) for name, column in values.items()},
     )
 
@@ -345,11 +347,19 @@ def _check_missions(missions: tuple[Int32s, Int64s], **columns: npt.NDArray[Any]
 
 
 def _series(
-    mission: Int32s, codes: tuple[Int32s, Int32s, Int32s], keys: tuple[list[str], Int32s]
+    mission: Int32s,
+    codes: tuple[Int32s, Int32s, Int32s],
+    own_names: list[tuple[list[str], Int32s]],
 ) -> tuple[Int64s, Int32s, Int64s]:
-    """The order of the rows by comparison and mission, their comparison, and where each begins."""
+    """The order of the rows by comparison and mission, their comparison, and where each begins.
+
+    By their own names (key, node and parameter) rows of one comparison are told apart: instances,
+    and nodes that have one name only without the robot's namespace.
+    """
     base, node, parameter = codes
-    _, instance = _sorted(*keys)
+    instance = np.zeros(mission.size, np.int64)
+    for names, code in own_names:
+        instance = np.unique(instance * max(1, len(names)) + code, return_inverse=True)[1]
     order = np.lexsort((instance, mission, node, base, parameter))
     name = np.column_stack([parameter[order], base[order], node[order]])
     new = np.ones(order.size, np.bool_)

@@ -38,7 +38,8 @@ class Settings:
     Attributes:
         parameters: the names; those of ``Rows.parameters`` come first, in their order.
         flags: bool[p], whether the numbers of each are true and false.
-        numbers: float64[v], the different values, nan for what is no number.
+        numbers: float64[v], the different values, nan for what is no number; a limit that is off
+            may be infinite.
         texts: what the values are called that are no numbers, by their code.
         together: the codes of the values that a parameter had in one mission, by theirs.
         parameter: int32[e], sorted; ``mission`` int32[e], rising in each parameter.
@@ -110,7 +111,7 @@ def _compared(rows: Rows) -> _Found:
     """What the thresholds say; those of derived comparisons only where nothing else does."""
     kinds = [one.kind for one in rows.series]
     derived = np.array([kind == "derived" for kind in kinds], np.bool_)
-    known = np.isfinite(rows.thresh)
+    known = ~np.isnan(rows.thresh)
     plain = known & ~derived[rows.which] if len(rows) else known
     width = len(rows.parameters) or 1
     place = rows.mission.astype(np.int64) * width + rows.parameter
@@ -183,7 +184,7 @@ def _parsed(text: str) -> tuple[float, str]:
             number = float(value)
         except OverflowError:
             number = np.inf
-        if np.isfinite(number):
+        if not np.isnan(number):
             return number, ""
     return np.nan, shown_value(value, _LONGEST)
 

@@ -24,7 +24,9 @@ good mission has none: a value with which all flew, also those that went right, 
 The wrong values are the same for all robots, or each robot has its own, or none, as what is right
 for one may be wrong for its sister (``OWN``). Good missions of the same robot with the same value
 speak against it either way, those of sisters only in the first case. A bad mission whose value is
-not known counts ``UNSAID``. The evidence is at least ``UNCHANGED``.
+not known counts ``UNSAID``. P(bad) is that of the missions in which the value is known: what is
+compared only when something has gone wrong, as in a recovery, is not suspicious for that. The
+evidence is at least ``UNCHANGED``.
 """
 
 from __future__ import annotations
@@ -81,7 +83,7 @@ class Missions(NamedTuple):
     outside: Floats
 
     @classmethod
-    def of(cls, robot: Int32s, bad: Bools) -> Missions:
+    def of(cls, robot: Int32s | Int64s, bad: Bools) -> Missions:
         """The missions of these robots."""
         every = np.bincount(robot)
         wrong = np.bincount(robot, bad, every.size)
@@ -132,7 +134,7 @@ def value_evidence(
         ordered: whether a wrong value is one that is too large or too small.
         several: whether the fleet has several robots.
     """
-    own = missions.take(known)
+    own = Missions.of(missions.robot[known], missions.bad[known])
     unsaid = int(missions.bad.sum()) - int(own.bad.sum())
     silent = max(unsaid * UNSAID, UNCHANGED / 2)
     if not own.bad.any():

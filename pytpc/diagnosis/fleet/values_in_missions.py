@@ -72,7 +72,12 @@ def values_in(settings: Settings, verdicts: Verdicts, parameter: int) -> Held:
         max(0, codes.size - MOST_VALUES),
         nowhere / int(verdicts.bad.sum()) if known else None,
         _names(verdicts, robot[fresh]),
-        _reasons(listed_values, int(fresh.sum()), (known, int(verdicts.bad.sum()))),
+        _reasons(
+            listed_values,
+            int(fresh.sum()),
+            (known, int(verdicts.bad.sum())),
+            has_good=bool(good.any()),
+        ),
     )
 
 
@@ -81,11 +86,13 @@ def _names(verdicts: Verdicts, robot: Int32s | Int64s) -> tuple[str, ...]:
 
 
 def _reasons(
-    values: tuple[ValueInMissions, ...], fresh: int, bad: tuple[int, int]
+    values: tuple[ValueInMissions, ...], fresh: int, bad: tuple[int, int], *, has_good: bool
 ) -> tuple[str, ...]:
     known, every = bad
     if not known:
         return ("its value is known in no bad mission",)
+    if not has_good:
+        return ("its value is known in no good mission",)
     if not fresh:
         texts = listed([one.text for one in values if one.bad], _NAMED)
         return (f"each robot flew well with what it had in bad missions: {texts}",)

@@ -222,7 +222,8 @@ class OtherDecision:
     ``measure`` is what differs: ``own`` is its median over the robot's missions, ``usual`` that of
     the sisters' medians. ``score`` is how many of their median absolute deviations it is off;
     ``chance`` how likely chance ranks its missions so, times the number of tests.
-    ``is_set_otherwise`` says that the robot has another value of the parameter, too.
+    ``is_set_otherwise`` says that the robot has a value of the parameter, too, that fewer than half
+    of its sisters have.
     """
 
     robot: str
@@ -236,18 +237,26 @@ class OtherDecision:
     is_set_otherwise: bool
 
 
+class RobotCounts(NamedTuple):
+    """How many decisions and settings of a robot differ from its sisters."""
+
+    robot: str
+    decisions: int
+    settings: int
+
+
 @dataclass(frozen=True, slots=True)
 class FleetOutliers:
-    """Which robots differ from their sisters, the most deviating first.
+    """Which robots differ from their sisters: decisions by chance, settings that matter first.
 
     ``settings`` and ``decisions`` are separate: a robot may be set otherwise on purpose. ``counts``
-    has for each robot its name and how many of both it has, the most decisions first. ``tested``
+    has one entry for each robot, the most decisions first. ``tested``
     counts the tests of decisions. ``notes`` say what could not be judged.
     """
 
     settings: tuple[OtherSetting, ...]
     decisions: tuple[OtherDecision, ...]
-    counts: tuple[tuple[str, int, int], ...]
+    counts: tuple[RobotCounts, ...]
     tested: int
     notes: tuple[str, ...]
 
