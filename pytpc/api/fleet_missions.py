@@ -182,13 +182,16 @@ def meant(fleet: Fleet, name: str) -> Place:
     raise InputError(what, shown_url(fleet.url))
 
 
-def write_folder(fleet: Fleet, place: Place, folder: Path) -> None:
+def write_folder(fleet: Fleet, place: Place, folder: Path) -> str:
     """Write a mission as a folder that all other commands take.
 
     Args:
         fleet: the data set.
         place: of the mission.
         folder: a new or empty one.
+
+    Returns:
+        The name of its build.
 
     Raises:
         InputError: the mission is broken or not there, or the folder has something in it.
@@ -197,7 +200,8 @@ def write_folder(fleet: Fleet, place: Place, folder: Path) -> None:
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise InputError("is there already; give a new -o FOLDER", folder)
     row, events, summaries = _whole(fleet, place)
-    files = dict(row["files"]) | {MERGED_FILE: fleet.build(row["build"])}
+    build = str(row["build"])
+    files = dict(row["files"]) | {MERGED_FILE: fleet.build(build)}
     tables = {EVENTS_FILE: events}
     if len(summaries):
         tables[SUMMARIES_FILE] = summaries
@@ -217,6 +221,7 @@ def write_folder(fleet: Fleet, place: Place, folder: Path) -> None:
             shutil.rmtree(staged, ignore_errors=True)
     except OSError as error:
         raise TpcError(f"cannot be written: {error.strerror or error}", folder) from error
+    return build
 
 
 def _whole(fleet: Fleet, place: Place) -> tuple[dict[str, Any], pa.Table, pa.Table]:
@@ -263,8 +268,7 @@ def opened(fleet: Fleet, place: Place) -> Iterator[Opened]:
     """
     with tempfile.TemporaryDirectory(prefix="pytpc-fleet-") as scratch:
         folder = Path(scratch) / folder_name(place)
-        write_folder(fleet, place, folder)
-        (build,) = fleet.read(place, COMMIT, ["build"])["build"].to_pylist()
+        build = write_folder(fleet, place, folder)
         run = RecordedRun(load_recording(folder), folder)
         yield Opened(run, build_of(fleet, build))
 

@@ -37,7 +37,7 @@ FLEET_FILE = "fleet.json"
 _BUILDS = "builds"
 _PART = "part.parquet"
 _PLACE = re.compile(r"robot=([^/]+)/day=([^/]+)/mission=([^/]+)/part\.parquet$")
-_BUILD = re.compile(r"[0-9a-f]{16}")
+_BUILD = re.compile(r"[A-Za-z0-9_-]{1,64}")
 _LARGEST_BUILD = 1 << 28
 _TRIES = 5
 _SECRET = re.compile(r"(?<=://)[^/\s]*@")
