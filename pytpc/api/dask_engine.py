@@ -9,6 +9,7 @@ Dask, and its tasks are done again: all tasks may be done twice.
 
 from __future__ import annotations
 
+import asyncio
 import itertools
 import logging
 import os
@@ -29,6 +30,7 @@ MEMORY = "2GB"
 _JOINED = 8
 """So many results are joined at once."""
 _ANSWERS_S = 20
+_AT_START = "pytpc.api.dask_worker"
 
 
 @dataclass(frozen=True)
@@ -140,7 +142,7 @@ class Engine:
         del leaves
         try:
             while not all(one.done() for one in wanted):
-                with suppress(TimeoutError):
+                with suppress(TimeoutError, asyncio.TimeoutError):
                     wait(wanted, timeout=1)
             found = client.gather(wanted)
         except KilledWorker as error:
@@ -187,13 +189,15 @@ def engine(cluster: str | None = None, workers: int | None = None) -> Iterator[E
                 host="127.0.0.1",
                 dashboard_address=None,
                 silence_logs=logging.CRITICAL,
+                preload=[*dask.config.get("distributed.worker.preload"), _AT_START],
             )
             address = stack.enter_context(made)
         else:
             address = cluster
         try:
             client = stack.enter_context(distributed.Client(address, timeout=_ANSWERS_S))
-        except (OSError, ValueError, TimeoutError) as error:
+        # With Python 3.10 that of asyncio is no OSError.
+        except (OSError, ValueError, asyncio.TimeoutError) as error:
             why = str(error).partition("\n")[0]
             raise InputError(f"no scheduler of Dask answers at {cluster}: {why}") from error
         yield Engine(count, client)

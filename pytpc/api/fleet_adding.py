@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import glob
 import hashlib
 import os
 import re
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timezone
 from importlib.metadata import version
 from pathlib import Path
-from typing import Literal, NamedTuple, get_args
+from typing import Any, Literal, NamedTuple, get_args
 
 import pyarrow as pa
 
@@ -22,11 +24,15 @@ from pytpc.api.static_of_mission import find_static, recorded_static
 from pytpc.base.checked_json import dump_json
 from pytpc.base.closest import path_hint
 from pytpc.base.errors import InputError, TpcError
-from pytpc.fleet.store import Fleet, Place
+from pytpc.base.wording import plain
+from pytpc.fleet.store import FLEET_FILE, Fleet, Place
 from pytpc.fleet.tables import MISSIONS, Table
 from pytpc.ingest.reading import holds_mission, read
+from pytpc.recording.marks_home import marks_home
 from pytpc.recording.mission import RUN_FILE, Recording, is_converted, is_ros2_folder
 from pytpc.static.static_info import StaticInfo
+from pytpc.values.origins import origins_file
+from pytpc.values.recording import params_file
 
 Keep = Literal["edges", "full"]
 KEEPS: tuple[Keep, ...] = get_args(Keep)
@@ -36,6 +42,7 @@ VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 PERIOD_NS = 10 * 10**9
 """Of a comparison there is a summary for each period of this length in which it was evaluated."""
 _BAGS = (".bag", ".mcap", ".db3")
+_RECORDED = (*_BAGS, ".tpc", ".parquet", ".log")
 _NAME = 60
 _MOST_FILES = 10_000
 _FIRST_REAL_NS = 10**18
@@ -49,10 +56,14 @@ _KNOWN: dict[tuple[bytes, Path | None], tuple[StaticInfo, bytes]] = {}
 
 
 class Given(NamedTuple):
-    """A mission to add: its path, and the name of its robot."""
+    """A mission to add: its path, and the name of its robot.
+
+    A folder that cannot be searched for missions stands for them; ``why`` says why then.
+    """
 
     path: Path
     robot: str
+    why: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +89,8 @@ class Added(NamedTuple):
     """What became of a mission.
 
     ``place`` is None where it could not be added: then ``why`` says why. ``is_new`` is false where
-    it was there. ``reports`` counts its evaluations; ``notes`` are for the user.
+    it was there. ``reports`` counts its evaluations; ``notes`` are for the user. ``replaced`` are
+    places that it had before: on another day, or when less of it was recorded.
     """
 
     path: Path
@@ -88,13 +100,14 @@ class Added(NamedTuple):
     size: int = 0
     notes: tuple[str, ...] = ()
     why: str = ""
+    replaced: tuple[Place, ...] = ()
 
 
 def missions_at(paths: Iterable[Path], robot: str | None = None) -> list[Given]:
     """The missions at paths, each once: recordings, and all that lie in folders, at any depth.
 
     A folder that is one mission by its form is one, also with several files; in other folders each
-    bag is a mission.
+    bag is a mission. Links to folders are not followed.
 
     Args:
         paths: files and folders.
@@ -109,29 +122,46 @@ def missions_at(paths: Iterable[Path], robot: str | None = None) -> list[Given]:
         if not path.exists():
             raise InputError(f"no such bag, file or folder{path_hint(path)}", path)
         before = len(found)
-        for one in _below(path) if path.is_dir() else [path]:
-            found.setdefault(one.absolute(), Given(one, robot or _robot_of(one, path)))
+        for one, why in _below(path) if path.is_dir() else [(path, "")]:
+            if why and one == path:
+                raise InputError(why, path)
+            name = (robot or _robot_of(one, path)).encode("utf-8", "surrogateescape")
+            found.setdefault(one.absolute(), Given(one, name.decode("utf-8", "replace"), why))
         if len(found) == before and not any(path.absolute() in one.parents for one in found):
             raise InputError("no recordings in this folder, or in those in it", path)
     return [found[path] for path in sorted(found)]
 
 
-def _below(folder: Path) -> Iterator[Path]:
-    if (folder / RUN_FILE).is_file() or is_converted(folder) or is_ros2_folder(folder):
-        yield folder
-        return
-    try:
-        entries = sorted(one for one in folder.iterdir() if not one.name.startswith("."))
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror or error}", folder) from error
+def _below(folder: Path) -> Iterator[tuple[Path, str]]:
+    """The missions in a folder, at any depth; and folders that cannot be read, with the reason."""
+    left = [folder]
+    while left:
+        one = left.pop()
+        try:
+            missions, folders = _in(one)
+        except OSError as error:
+            yield one, f"cannot be read: {error.strerror or error}"
+            continue
+        yield from ((mission, "") for mission in missions)
+        left += reversed(folders)
+
+
+def _in(folder: Path) -> tuple[list[Path], list[Path]]:
+    """The missions in a folder, and the folders that may have more.
+
+    Raises:
+        OSError: it cannot be read.
+    """
+    entries = sorted(one for one in folder.iterdir() if not one.name.startswith("."))
+    names = {one.name for one in entries}
+    if RUN_FILE in names or is_converted(folder) or is_ros2_folder(folder):
+        return [folder], []
+    if FLEET_FILE in names:
+        return [], []
     bags = [one for one in entries if one.suffix in _BAGS and one.is_file()]
-    yield from bags
     if not bags and holds_mission(folder):
-        yield folder
-        return
-    for one in entries:
-        if one.is_dir() and not one.is_symlink():
-            yield from _below(one)
+        return [folder], []
+    return bags, [one for one in entries if one.is_dir() and not one.is_symlink()]
 
 
 def _robot_of(mission: Path, given: Path) -> str:
@@ -166,48 +196,120 @@ def add(
     """
     fleet.begin()
     before = fleet.places()
-    known = {} if options.again else _known(fleet, before, engine)
+    robots = {one.robot for one in given}
+    known = _known(fleet, [place for place in before if place.robot in robots], engine)
+    build = None if options.static is None else _hash(_merged(options.static)[1])
     jobs = []
     found: dict[int, Added] = {}
     for number, one in enumerate(given):
-        stamp = stamp_of(one.path, options)
-        place = known.get((one.robot, stamp))
-        if place is not None:
-            found[number] = Added(one.path, place)
+        if one.why:
+            found[number] = Added(one.path, why=one.why)
+            continue
+        try:
+            stamp = stamp_of(one.path)
+        except OSError as error:
+            found[number] = Added(one.path, why=f"cannot be read: {error.strerror or error}")
+            continue
+        earlier = known.get((one.robot, _source(one.path)), ())
+        there = [own for own in earlier if own.is_as_asked(stamp, build, options)]
+        if there and not options.again:
+            found[number] = Added(one.path, there[0].place)
         else:
-            jobs.append((number, _Job(fleet, one, options, stamp)))
+            jobs.append((number, _Job(fleet, one, options, stamp, tuple(earlier))))
     made = engine.map(_added, [job for _, job in jobs], on_progress)
     # A task may be done twice, and finds its own mission there then.
-    there = set(before)
-    made = [one._replace(is_new=one.place is not None and one.place not in there) for one in made]
+    made = _told(made, before)
     found |= dict(zip((number for number, _ in jobs), made, strict=True))
     return [found[number] for number in range(len(given))]
 
 
-def _known(fleet: Fleet, places: Sequence[Place], engine: Engine) -> dict[tuple[str, str], Place]:
-    """The missions that are there, by robot and stamp."""
-    stamps = engine.map(_stamp, [(fleet, place) for place in places])
-    return {
-        (place.robot, stamp): place
-        for place, stamp in zip(places, stamps, strict=True)
-        if stamp is not None
-    }
+def _told(made: Iterable[Added], before: Iterable[Place]) -> list[Added]:
+    """Missions with what is known of them: whether each is new, or is there a second time."""
+    places: defaultdict[str, set[Place]] = defaultdict(set)
+    for known in before:
+        places[known.mission].add(known)
+    told = []
+    for one in made:
+        place, notes = one.place, one.notes
+        if place is not None:
+            there = places[place.mission]
+            if twice := sorted(there - {place, *one.replaced}):
+                named = plain("/".join(twice[0]))
+                notes = (*notes, f"is there as {named}, too: it counts twice until you drop one")
+            told.append(one._replace(is_new=place not in there, notes=notes))
+        else:
+            told.append(one)
+    return told
 
 
-def _stamp(job: tuple[Fleet, Place]) -> str | None:
+class _Earlier(NamedTuple):
+    """What is there of a recording."""
+
+    place: Place
+    stamp: str
+    keep: str
+    verdict: str
+    build: str
+    start_ns: int
+
+    def is_as_asked(self, stamp: str, build: str | None, options: AddOptions) -> bool:
+        """Whether it is the same files; what nobody asks for now may be as somebody asked then."""
+        return (
+            self.stamp == stamp
+            and self.keep in {options.keep, "full"}
+            and options.verdict in {None, self.verdict}
+            and options.day in {None, self.place.day}
+            and build in {None, self.build}
+        )
+
+    def is_replaced_by(self, place: Place, start_ns: int) -> bool:
+        """Whether a mission of the same path is the same one, longer or on another day."""
+        is_same = self.place.mission == place.mission
+        grew = self.start_ns == start_ns >= _FIRST_REAL_NS
+        return self.place != place and (is_same or grew)
+
+
+def _known(
+    fleet: Fleet, places: Sequence[Place], engine: Engine
+) -> dict[tuple[str, str], list[_Earlier]]:
+    """The missions that are there, by robot and source."""
+    rows = engine.map(_row, [(fleet, place) for place in places])
+    found: dict[tuple[str, str], list[_Earlier]] = {}
+    for place, row in zip(places, rows, strict=True):
+        if row is not None:
+            earlier = found.setdefault((place.robot, row.pop("source")), [])
+            earlier.append(_Earlier(place, **row))
+    return found
+
+
+def _row(job: tuple[Fleet, Place]) -> dict[str, Any] | None:
     fleet, place = job
+    columns = ["source", "stamp", "keep", "verdict", "build", "start_ns"]
     try:
-        (stamp,) = fleet.read(place, "missions", ["stamp"])["stamp"].to_pylist()
+        (row,) = fleet.read(place, "missions", columns).to_pylist()
     except (InputError, ValueError):
         return None
-    return str(stamp)
+    return dict(row)
 
 
-def stamp_of(path: Path, options: AddOptions = AddOptions()) -> str:
-    """A digest of the names, sizes and times of a mission's files, and of how it is added."""
-    digest = hashlib.sha256(f"{options.keep} {options.verdict} {options.day}".encode())
-    digest.update(str(path.absolute()).encode("utf-8", "surrogateescape"))
-    files = [path, *path.parent.glob(f"{path.name}.*")] if path.is_file() else _files_in(path)
+def _source(path: Path) -> str:
+    return str(path.absolute()).encode("utf-8", "backslashreplace").decode()
+
+
+def stamp_of(path: Path) -> str:
+    """A digest of the names, sizes and times of a mission's files, and of those beside it.
+
+    Raises:
+        OSError: one of them cannot be read, or has just gone.
+    """
+    digest = hashlib.sha256()
+    files = {path} if path.is_file() else set(_files_in(path))
+    home = marks_home(path)
+    files |= {*home.files(), *home.files_nearby()}
+    if path.is_file():
+        files |= set(path.parent.glob(f"{glob.escape(path.name)}.*"))
+        beside = params_file(path), origins_file(path)
+        files |= {one for one in beside if one is not None and one.is_file()}
     for file in sorted(files)[:_MOST_FILES]:
         found = file.stat()
         told = f"\0{file.name}\0{found.st_size}\0{found.st_mtime_ns}"
@@ -229,6 +331,7 @@ class _Job(NamedTuple):
     given: Given
     options: AddOptions
     stamp: str
+    earlier: tuple[_Earlier, ...]
 
 
 def _added(job: _Job) -> Added:
@@ -242,11 +345,13 @@ def _added(job: _Job) -> Added:
         why = f"cannot be read: {error.strerror or error}"
     except MemoryError:
         why = "does not fit into memory"
+    except ValueError as error:  # one broken mission among thousands ends nothing
+        why = f"cannot be read: {error}"
     return Added(path, why=why.removeprefix(f"{path}: "))
 
 
 def _added_anew(job: _Job) -> Added:
-    fleet, (path, robot), options, stamp = job
+    fleet, (path, robot, _), options, stamp, earlier = job
     recording = read(path, period_ns=PERIOD_NS if options.keep == "edges" else None)
     static, content = _static_for(path, recording, options.static)
     check_reports(recording, static, path)
@@ -254,11 +359,11 @@ def _added_anew(job: _Job) -> Added:
     comparisons = comparisons_of(recording, with_names_of(recording, static, path))
     day, notes = _day_of(recording, path, options.day)
     notes = (*recording.notes, *notes)
-    build = hashlib.sha256(content).hexdigest()[:16]
+    build = _hash(content)
     evaluations = sum(comparisons["evaluations"].to_pylist())
     row = {
         "name": _name_of(path),
-        "source": str(path.absolute()).encode("utf-8", "backslashreplace").decode(),
+        "source": _source(path),
         "stamp": stamp,
         "build": build,
         "verdict": options.verdict or ("bad" if recording.marks else "good"),
@@ -284,7 +389,11 @@ def _added_anew(job: _Job) -> Added:
     fleet.put_build(build, content)
     place = Place(robot, day, mission_id(_name_of(path), comparisons))
     size = fleet.write(place, tables)
-    return Added(path, place, True, evaluations, size, notes)
+    start_ns = recording.start_ns
+    replaced = tuple(one.place for one in earlier if one.is_replaced_by(place, start_ns))
+    for one in replaced:
+        fleet.drop(one)
+    return Added(path, place, True, evaluations, size, notes, replaced=replaced)
 
 
 def _static_for(path: Path, recording: Recording, given: Path | None) -> tuple[StaticInfo, bytes]:
@@ -310,6 +419,10 @@ def _merged(source: Path) -> tuple[StaticInfo, bytes]:
     return static, dump_json(static.to_json())
 
 
+def _hash(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()[:16]
+
+
 def _name_of(path: Path) -> str:
     name = path.name if path.is_dir() else path.stem
     return re.sub(r"[^A-Za-z0-9_.-]+", "-", name).strip(".-")[:_NAME] or "mission"
@@ -319,16 +432,17 @@ def _day_of(recording: Recording, path: Path, given: str | None) -> tuple[str, t
     """The day of a mission, and notes about its clock: by the reports, or else by the files."""
     if given is not None:
         return given, ()
-    written_ns = min(
-        (file.stat().st_mtime_ns for file in (_files_in(path) if path.is_dir() else [path])),
-        default=0,
-    )
+    files = _files_in(path) if path.is_dir() else [path]
+    # Other files in a folder may be older, or newer.
+    files = [one for one in files if one.suffix in _RECORDED] or files
+    written = [one.stat().st_mtime_ns for one in files] or [0]
     start_ns = recording.start_ns
     if start_ns < _FIRST_REAL_NS:
-        return _day(written_ns), ()
-    if start_ns > written_ns + _DAYS_APART * _DAY_NS:
-        what = f"its clock says {_day(start_ns)}, but its files are of {_day(written_ns)}"
-        return _day(written_ns), (f"{what}: that is taken as its day",)
+        return _day(min(written)), ()
+    if start_ns > max(written) + _DAYS_APART * _DAY_NS:
+        day = _day(min(written))
+        what = f"its clock says {_day(start_ns)}, but its files are of {day}"
+        return day, (f"{what}: that is taken as its day",)
     return _day(start_ns), ()
 
 

@@ -40,7 +40,7 @@ from pytpc.diagnosis.results.fleet import (
     FoundMission,
     FoundTurn,
 )
-from pytpc.fleet.store import Fleet, Place
+from pytpc.fleet.store import Fleet, Place, shown_url
 from pytpc.fleet.tables import COMPARISONS, VALUES, WORD
 from pytpc.recording.parameter_values import ParameterValues, SetValue
 from pytpc.recording.profile import LearnedRun
@@ -159,6 +159,9 @@ def _digest(part: _Part, mission: FleetMission) -> Digests:
         )
     except InputError as error:
         return Digests(_ROWS.empty_table(), _VALUES.empty_table(), (Unread(place, error.message),))
+    if mission.reports and not len(rows):
+        why = Unread(place, "its comparisons are missing: add it again")
+        return Digests(_ROWS.empty_table(), _VALUES.empty_table(), (why,))
     if names:
         keys = rows["key"].to_pylist()
         new = [renamed(key, names) for key in keys]
@@ -296,7 +299,7 @@ def learn_good(
     """
     chosen = spread([one for one in found if not one.is_bad], most)
     if not chosen:
-        raise InputError("no good missions: add some, or select others", Path(fleet.url))
+        raise InputError("no good missions: add some, or select others", shown_url(fleet.url))
     learned = []
     for number, one in enumerate(chosen, start=1):
         with opened(fleet, one.place) as mission:

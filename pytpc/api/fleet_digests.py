@@ -20,6 +20,7 @@ from pytpc.fleet.tables import COMPARISONS, MARKS, VALUES
 from pytpc.recording.graph_file import GRAPH_FILE
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import MARKS_FILE, RUN_FILE, Recording, marks_json
+from pytpc.recording.summaries import Summaries
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.origins import PARAMS_FILE, origins_file, read_origins
 from pytpc.values.recording import params_file
@@ -60,8 +61,7 @@ def _comparison(one: Behaviour, recording: Recording) -> dict[str, Any]:
         np.concatenate([
             events.cmp[rows],
             summaries.cmp[own],
-            summaries.thresh[own] + summaries.diff_min[own],
-            summaries.thresh[own] + summaries.diff_max[own],
+            *_compared(summaries, own),
         ])
     )  # fmt: skip
     margins = one.margins
@@ -101,6 +101,20 @@ def _comparison(one: Behaviour, recording: Recording) -> dict[str, Any]:
 
 def _ends(rows: Int64s, summaries: Int64s) -> list[int]:
     return [*rows.tolist(), *summaries.tolist()]
+
+
+def _compared(summaries: Summaries, rows: Int64s) -> tuple[Floats, Floats]:
+    """At least and at most so much was compared, as if the threshold had been the last one.
+
+    If it was another one, they are at most the extremes of all that stood on both sides.
+    """
+    with np.errstate(all="ignore"):
+        low = summaries.thresh[rows] + summaries.diff_min[rows]
+        high = summaries.thresh[rows] + summaries.diff_max[rows]
+        return (
+            np.clip(low, summaries.low[rows], summaries.high[rows]),
+            np.clip(high, summaries.low[rows], summaries.high[rows]),
+        )
 
 
 def _extremes(values: Floats) -> tuple[float, float]:

@@ -15,7 +15,14 @@ import pyarrow as pa
 from pytpc.api.comparing import RecordedRun
 from pytpc.api.dask_engine import Engine
 from pytpc.api.diagnosing import AskedMission
-from pytpc.api.fleet_missions import FleetMission, Unread, build_of, opened, write_folder
+from pytpc.api.fleet_missions import (
+    FleetMission,
+    Unread,
+    build_of,
+    folder_name,
+    opened,
+    write_folder,
+)
 from pytpc.base.errors import InputError
 from pytpc.base.wording import many
 from pytpc.diagnosis.fleet.rows import Rows
@@ -178,7 +185,7 @@ class _Good:
 @lru_cache(maxsize=64)
 def _of_store(url: str, patience_s: float, place: Place) -> _Good | None:
     folder = tempfile.TemporaryDirectory(prefix="pytpc-fleet-")
-    path = Path(folder.name) / place.mission
+    path = Path(folder.name) / folder_name(place)
     try:
         write_folder(Fleet(url, patience_s), place, path)
         recording = replace(thinned(load_recording(path)), marks=())

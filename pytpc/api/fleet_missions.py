@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
@@ -21,12 +22,14 @@ from pytpc.base.closest import did_you_mean
 from pytpc.base.errors import InputError, TpcError
 from pytpc.base.paths import MERGED_FILE
 from pytpc.base.wording import plain
-from pytpc.fleet.store import Fleet, Place
+from pytpc.fleet.store import Fleet, Place, shown_url
 from pytpc.fleet.tables import COMMIT, MISSIONS
 from pytpc.recording.mission import EVENTS_FILE, SUMMARIES_FILE, load_recording
 from pytpc.static.static_info import StaticInfo
 
 _TOLD = tuple(name for name in MISSIONS.names if name not in {"files", "stamp"})
+_NAME = 200
+_TRIES = 5
 _TOGETHER = 16
 """So many missions are read by one task: each has a small row."""
 
@@ -131,7 +134,7 @@ def missions(
     for robot in selection.robots:
         if robot not in known:
             hint = did_you_mean(robot, known)
-            raise InputError(f"has no robot {plain(robot)}{hint}", Path(fleet.url))
+            raise InputError(f"has no robot {plain(robot)}{hint}", shown_url(fleet.url))
     places = [place for place in every if selection.has_place(place)]
     parts = [(fleet, tuple(places[at : at + _TOGETHER])) for at in range(0, len(places), _TOGETHER)]
     read = engine.joined(_read, parts, _joined, on_progress)
@@ -191,13 +194,13 @@ def meant(fleet: Fleet, name: str) -> Place:
         return found[0]
     if not found:
         hint = did_you_mean(name, [place.mission for place in places])
-        raise InputError(f"has no mission {plain(name)}{hint}", Path(fleet.url))
+        raise InputError(f"has no mission {plain(name)}{hint}", shown_url(fleet.url))
     which = ", ".join("/".join(place) for place in found[:3])
     what = f"has {len(found)} missions {plain(name)}; give one of: {plain(which)}"
-    raise InputError(what, Path(fleet.url))
+    raise InputError(what, shown_url(fleet.url))
 
 
-def write_folder(fleet: Fleet, place: Place, folder: Path) -> None:
+def write_folder(fleet: Fleet, place: Place, folder: Path) -> str:
     """Write a mission as a folder that all other commands take.
 
     Args:
@@ -205,18 +208,19 @@ def write_folder(fleet: Fleet, place: Place, folder: Path) -> None:
         place: of the mission.
         folder: a new or empty one.
 
+    Returns:
+        The name of its build.
+
     Raises:
         InputError: the mission is broken or not there, or the folder has something in it.
         TpcError: the folder cannot be written, or the store does not answer.
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise InputError("is there already; give a new -o FOLDER", folder)
-    rows = fleet.read(place, COMMIT, ["build", "files"]).to_pylist()
-    if not rows:
-        raise InputError(f"has no mission {plain('/'.join(place))}", Path(fleet.url))
-    files = dict(rows[0]["files"]) | {MERGED_FILE: fleet.build(rows[0]["build"])}
-    tables = {EVENTS_FILE: fleet.read(place, "reports")}
-    summaries = fleet.read(place, "summaries")
+    row, events, summaries = _whole(fleet, place)
+    build = str(row["build"])
+    files = dict(row["files"]) | {MERGED_FILE: fleet.build(build)}
+    tables = {EVENTS_FILE: events}
     if len(summaries):
         tables[SUMMARIES_FILE] = summaries
     try:
@@ -235,6 +239,25 @@ def write_folder(fleet: Fleet, place: Place, folder: Path) -> None:
             shutil.rmtree(staged, ignore_errors=True)
     except OSError as error:
         raise TpcError(f"cannot be written: {error.strerror or error}", folder) from error
+    return build
+
+
+def _whole(fleet: Fleet, place: Place) -> tuple[dict[str, Any], pa.Table, pa.Table]:
+    """The row of a mission, its reports and its summaries, all of one version of it."""
+    named = plain("/".join(place))
+    columns = ["build", "files", "stamp", "keep", "rows"]
+    for _ in range(_TRIES):
+        rows = fleet.read(place, COMMIT, columns).to_pylist()
+        if len(rows) != 1:
+            raise InputError(f"has no mission {named}", shown_url(fleet.url))
+        tables = fleet.read(place, "reports"), fleet.read(place, "summaries")
+        if fleet.read(place, COMMIT, columns).to_pylist() != rows:
+            continue
+        if len(tables[0]) != rows[0]["rows"]:
+            what = f"has not all reports of {named}: add it again"
+            raise InputError(what, shown_url(fleet.url))
+        return rows[0], *tables
+    raise InputError(f"{named} is replaced again and again; try later", shown_url(fleet.url))
 
 
 class Opened(NamedTuple):
@@ -242,6 +265,15 @@ class Opened(NamedTuple):
 
     run: RecordedRun
     static: StaticInfo
+
+
+def folder_name(place: Place) -> str:
+    """The name of a mission as that of a folder: in somebody else's data set it may be a path.
+
+    >>> folder_name(Place("a", "2026-11-30", "/etc/x"))
+    '-etc-x'
+    """
+    return re.sub(r"[^A-Za-z0-9_.-]", "-", place.mission).lstrip(".")[:_NAME] or "mission"
 
 
 @contextmanager
@@ -253,9 +285,8 @@ def opened(fleet: Fleet, place: Place) -> Iterator[Opened]:
         TpcError: the store does not answer.
     """
     with tempfile.TemporaryDirectory(prefix="pytpc-fleet-") as scratch:
-        folder = Path(scratch) / place.mission
-        write_folder(fleet, place, folder)
-        (build,) = fleet.read(place, COMMIT, ["build"])["build"].to_pylist()
+        folder = Path(scratch) / folder_name(place)
+        build = write_folder(fleet, place, folder)
         run = RecordedRun(load_recording(folder), folder)
         yield Opened(run, build_of(fleet, build))
 

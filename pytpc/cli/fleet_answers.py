@@ -23,7 +23,7 @@ from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import JSON, PATH, as_object
 from pytpc.cli.console import console, print_json, progress, tell_person
 from pytpc.cli.fleet_options import PARQUET, selecting, store_options, tell_unread
-from pytpc.fleet.store import Fleet
+from pytpc.fleet.store import Fleet, shown_url
 from pytpc.present.fleet_columns import drifts_table, found_table, outliers_table, ranking_table
 from pytpc.present.fleet_json import drifts_json, found_json, outliers_json, ranking_json
 from pytpc.present.fleet_page import (
@@ -94,7 +94,7 @@ class _Shown(Generic[Answer]):
         if given.parquet is not None:
             write_table(self.table(answer), given.parquet)
         if given.page is not None:
-            write_page(given.page, self.page(answer, given.fleet))
+            write_page(given.page, self.page(answer, shown_url(given.fleet)))
             tell_person(f"written: {given.page}")
         if given.as_json:
             print_json(self.document(answer))

@@ -42,7 +42,7 @@ from pytpc.cli.console import table_of as text_table
 from pytpc.cli.fleet_answers import COMMANDS as ANSWERS
 from pytpc.cli.fleet_options import PARQUET, day_given, selecting, store_options, tell_unread
 from pytpc.cli.lines import say
-from pytpc.fleet.store import Fleet
+from pytpc.fleet.store import Fleet, shown_url
 
 Command = TypeVar("Command", bound=Callable[..., object])
 _DAY = re.compile(r"\d{4}-\d\d-\d\d")
@@ -166,7 +166,7 @@ def _tell_added(fleet: str, made: Sequence[Added]) -> None:
     if len(there) < len(made):
         text += f"; {len(made) - len(there):,} could not be added"
     click.echo(text)
-    tell_next(f"pytpc fleet rank {shlex.quote(plain(fleet))}")
+    tell_next(f"pytpc fleet rank {shlex.quote(plain(shown_url(fleet)))}")
 
 
 def size_text(size: int) -> str:
@@ -271,8 +271,8 @@ def show_command(given: _ShowArguments) -> None:
         place = meant(fleet, given.mission)
         known = next((one for one in found.found if one.place == place), None)
         if known is None:
-            why = next(one.why for one in found.unread if one.place == place)
-            raise InputError(f"{'/'.join(place)}: {why}", Path(given.fleet))
+            why = next((one.why for one in found.unread if one.place == place), "is not there now")
+            raise InputError(f"{'/'.join(place)}: {why}", shown_url(given.fleet))
         _show_mission(known, as_json=given.as_json)
         if given.output is not None:
             write_folder(fleet, place, given.output)
@@ -367,7 +367,8 @@ def drop_command(given: _DropArguments) -> None:
     if not places and not given.half:
         raise click.UsageError("say which: MISSION, --robot, --since, --until, --build or --half")
     if places and not given.yes and not given.as_json:
-        click.confirm(f"Remove {many(len(places), 'mission')} from {given.fleet}?", abort=True)
+        which = f"{many(len(places), 'mission')} from {plain(shown_url(given.fleet))}"
+        click.confirm(f"Remove {which}?", abort=True)
     with progress("removing missions") as advance:
         for number, place in enumerate(sorted(places), start=1):
             fleet.drop(place)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
+from datetime import date
 from typing import TypeVar
 
 import click
@@ -20,7 +21,13 @@ _SAID = 5
 
 def day_given(_context: click.Context, _option: click.Parameter, value: str | None) -> str | None:
     """A day as ``2026-11-30``, or nothing; raises click.BadParameter for anything else."""
-    if value is not None and not _DAY.fullmatch(value):
+    if value is None:
+        return None
+    try:
+        is_day = _DAY.fullmatch(value) is not None and date.fromisoformat(value) is not None
+    except ValueError:
+        is_day = False
+    if not is_day:
         raise click.BadParameter(f"{value!r} is no day; give it as 2026-11-30")
     return value
 

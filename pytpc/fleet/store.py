@@ -2,7 +2,8 @@
 
 Each file appears as a whole or not at all, and the row of ``missions`` comes last, so that readers
 see whole missions only, whoever writes beside them or was killed. The same mission has the same
-path and the same bytes, so that two who add it do no harm. Nothing is ever changed in place.
+path and the same bytes, so that two who add it do no harm. A mission that is replaced by another
+version of it, with new marks for example, does not exist meanwhile.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, BinaryIO, NamedTuple, TypeVar
 from urllib.parse import quote, unquote
 
 import pyarrow as pa
@@ -36,7 +37,10 @@ FLEET_FILE = "fleet.json"
 _BUILDS = "builds"
 _PART = "part.parquet"
 _PLACE = re.compile(r"robot=([^/]+)/day=([^/]+)/mission=([^/]+)/part\.parquet$")
+_BUILD = re.compile(r"[A-Za-z0-9_-]{1,64}")
 _LARGEST_BUILD = 1 << 28
+_TRIES = 5
+_SECRET = re.compile(r"(?<=://)[^/\s]*@")
 
 
 class Place(NamedTuple):
@@ -83,7 +87,11 @@ class Fleet:
         if self._has(FLEET_FILE):
             self.check()
             return
-        if self._asked(lambda: self._fs.exists(self._root) and bool(self._fs.ls(self._root))):
+        if self._strangers():
+            if self._has(FLEET_FILE):
+                # Somebody else made it just now.
+                self.check()
+                return
             raise InputError("is there and is no fleet's data set; give another name", self._at)
         self._put(FLEET_FILE, json.dumps({"schema": SCHEMA}).encode() + b"\n")
 
@@ -152,15 +160,26 @@ class Fleet:
         Raises:
             TpcError: it cannot be written, or the store does not answer.
         """
-        size = 0
-        for table in sorted(TABLES, key=lambda one: one == COMMIT):
-            rows = tables.get(table)
-            if rows is not None and (len(rows) or table == COMMIT):
-                content = _parquet(rows)
-                size += len(content)
-                self._put(_file(table, place), content)
-            else:
+        contents = {
+            table: _parquet(rows) for table, rows in tables.items() if len(rows) or table == COMMIT
+        }
+        size = sum(map(len, contents.values()))
+        before = self._get(_file(COMMIT, place))
+        if before is not None:
+            if all(self._get(_file(one, place)) == contents.get(one) for one in TABLES):
+                return size
+            # Whoever reads it, or finds it after we were killed, must not see half of each.
+            self._remove(_file(COMMIT, place))
+        for table in TABLES:
+            if table != COMMIT and table in contents:
+                self._put(_file(table, place), contents[table])
+            elif table != COMMIT:
                 self._remove(_file(table, place))
+        self._put(_file(COMMIT, place), contents[COMMIT])
+        for table, content in contents.items():
+            # Somebody may have removed what was half written.
+            if not self._has(_file(table, place)):
+                self._put(_file(table, place), content)
         return size
 
     def read(self, place: Place, table: Table, columns: Sequence[str] | None = None) -> pa.Table:
@@ -189,8 +208,12 @@ class Fleet:
         Raises:
             TpcError: it cannot be removed, or the store does not answer.
         """
-        for table in (COMMIT, *(one for one in TABLES if one != COMMIT)):
-            self._remove(_file(table, place))
+        for _ in range(_TRIES):
+            for table in (COMMIT, *(one for one in TABLES if one != COMMIT)):
+                self._remove(_file(table, place))
+            # Who was adding it meanwhile may have lost a table.
+            if not self.has(place):
+                return
 
     # --- builds
 
@@ -206,19 +229,22 @@ class Fleet:
         Raises:
             InputError: it is not there.
         """
-        content = self._get(f"{_BUILDS}/{name}.json")
+        # A name from somebody else's data set.
+        is_name = _BUILD.fullmatch(name) is not None
+        content = self._get(f"{_BUILDS}/{name}.json") if is_name else None
         if content is None or len(content) > _LARGEST_BUILD:
-            raise InputError(f"the static information of build {name} is missing", self._at)
+            what = f"the static information of build {plain(name)} is missing"
+            raise InputError(what, self._at)
         return content
 
     # --- the store
 
     @property
-    def _at(self) -> Path:
-        return Path(self.url)
+    def _at(self) -> str:
+        return shown_url(self.url)
 
-    def _path_of(self, name: str) -> Path:
-        return self._at / name
+    def _path_of(self, name: str) -> str:
+        return f"{self._at.rstrip('/')}/{name}"
 
     @cached_property
     def _opened(self) -> tuple[Any, str]:
@@ -227,7 +253,7 @@ class Fleet:
         try:
             fs, root = url_to_fs(self.url, **self.options)
         except (ImportError, ValueError) as error:
-            why = str(error).partition("\n")[0]
+            why = shown_url(str(error).partition("\n")[0])
             raise InputError(f"no such store: {plain(why)}", self._at) from error
         return fs, root.rstrip("/")
 
@@ -241,7 +267,29 @@ class Fleet:
 
     @property
     def _is_local(self) -> bool:
-        return bool(self._fs.protocol == "file" or "file" in self._fs.protocol)
+        return "file" in _protocols(self._fs)
+
+    def _at_store(self, name: str) -> str:
+        """The path of a file or table; in that of a web server the escapes are escaped again."""
+        is_web = not _protocols(self._fs).isdisjoint({"http", "https"})
+        return f"{self._root}/{quote(name, safe='/=') if is_web else name}"
+
+    def _strangers(self) -> list[str]:
+        """What is there that is not of a data set that somebody begins."""
+
+        def names() -> list[str]:
+            self._fs.invalidate_cache()
+            if not self._fs.exists(self._root):
+                return []
+            found = [one.rstrip("/") for one in self._fs.ls(self._root, detail=False)]
+            # Stores list a folder that somebody made by hand as a thing in it.
+            return [one.rpartition("/")[2] for one in found if one != self._root.rstrip("/")]
+
+        try:
+            found = self._asked(names)
+        except FileNotFoundError:
+            return []
+        return [one for one in found if not one.startswith(f".{FLEET_FILE}.")]
 
     def _asked(self, request: Callable[[], Answer]) -> Answer:
         """The answer of the store; FileNotFoundError is one.
@@ -254,11 +302,11 @@ class Fleet:
         except FileNotFoundError:
             raise
         except OSError as error:
-            raise TpcError(f"{error.strerror or error}", self._at) from error
+            raise TpcError(shown_url(f"{error.strerror or error}"), self._at) from error
         except TpcError:
             raise
         except Exception as error:  # each store has errors of its own
-            why = str(error).partition("\n")[0] or type(error).__name__
+            why = shown_url(str(error).partition("\n")[0]) or type(error).__name__
             raise TpcError(f"the store says: {plain(why)}", self._at) from error
 
     def _in_time(self, request: Callable[[], Answer]) -> Answer:
@@ -282,16 +330,21 @@ class Fleet:
         return answers[0]
 
     def _has(self, name: str) -> bool:
-        return bool(self._asked(lambda: self._fs.exists(f"{self._root}/{name}")))
+        def exists() -> bool:
+            # What others wrote counts, too.
+            self._fs.invalidate_cache()
+            return bool(self._fs.exists(self._at_store(name)))
+
+        return self._asked(exists)
 
     def _get(self, name: str) -> bytes | None:
         try:
-            return bytes(self._asked(lambda: self._fs.cat_file(f"{self._root}/{name}")))
+            return bytes(self._asked(lambda: self._fs.cat_file(self._at_store(name))))
         except FileNotFoundError:
             return None
 
     def _put(self, name: str, content: bytes) -> None:
-        path = f"{self._root}/{name}"
+        path = self._at_store(name)
         self._asked(lambda: self._written(path, content))
 
     def _written(self, path: str, content: bytes) -> None:
@@ -302,10 +355,9 @@ class Fleet:
             self._fs.pipe_file(path, content)
             return
         target = Path(path)
-        target.parent.mkdir(parents=True, exist_ok=True)
         staged = target.with_name(f".{target.name}.{secrets.token_hex(4)}")
         try:
-            with staged.open("xb") as stream:
+            with _staged(staged) as stream:
                 stream.write(content)
                 stream.flush()
                 os.fsync(stream.fileno())
@@ -314,7 +366,7 @@ class Fleet:
             staged.unlink(missing_ok=True)
 
     def _remove(self, name: str) -> None:
-        path = f"{self._root}/{name}"
+        path = self._at_store(name)
         with contextlib.suppress(FileNotFoundError):
             self._asked(lambda: self._fs.rm_file(path))
         if self._is_local:
@@ -324,10 +376,17 @@ class Fleet:
                     folder.rmdir()
 
     def _places_in(self, table: str) -> list[Place]:
+        def find() -> list[str]:
+            # What others wrote counts, too.
+            self._fs.invalidate_cache()
+            return list(self._fs.find(self._at_store(table)))
+
         try:
-            paths = self._asked(lambda: self._fs.find(f"{self._root}/{table}"))
+            paths = self._asked(find)
         except FileNotFoundError:
             return []
+        if not _protocols(self._fs).isdisjoint({"http", "https"}):
+            paths = [unquote(path) for path in paths]
         return sorted(self._parsed(paths))
 
     def _parsed(self, paths: Sequence[str]) -> Iterator[Place]:
@@ -335,6 +394,31 @@ class Fleet:
             found = _PLACE.search(path)
             if found is not None:
                 yield Place(*map(unquote, found.groups()))
+
+
+def shown_url(url: str) -> str:
+    """A URL for a person: without the user and the password in it.
+
+    >>> shown_url("sftp://ana:secret@host/fleet"), shown_url("fleet")
+    ('sftp://host/fleet', 'fleet')
+    """
+    return _SECRET.sub("", url)
+
+
+def _protocols(fs: Any) -> set[str]:  # noqa: ANN401 - fsspec has no types
+    return {fs.protocol} if isinstance(fs.protocol, str) else set(fs.protocol)
+
+
+def _staged(path: Path) -> BinaryIO:
+    """A new file in a folder that is made, and that somebody may remove while it is empty."""
+    for left in reversed(range(_TRIES)):
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            return path.open("xb")
+        except FileNotFoundError:
+            if not left:
+                raise
+    raise AssertionError("not reached")
 
 
 def _file(table: str, place: Place) -> str:

@@ -229,10 +229,13 @@ def condensed(recording: Recording, period_ns: int) -> Recording:
     extent = Extent(recording.seconds, 1, period_ns)
     hot = np.ones(len(events.keys), np.bool_)
     kept = _has_summaries(events, summaries)
-    for node, name in enumerate(events.nodes):
-        rows = np.flatnonzero((events.node == node) & ~kept)
+    channel = gathering.channel("", "events")
+    left = np.flatnonzero(~kept)
+    left = left[order_of(events.node[left])]
+    for rows in np.split(left, np.flatnonzero(np.diff(events.node[left])) + 1):
         if rows.size:
-            condenser = Condenser(gathering, gathering.channel(name, "events"), node, hot, extent)
+            node = int(events.node[rows[0]])
+            condenser = Condenser(gathering, channel, node, hot, extent)
             condenser.add(_part(events, rows))
             condenser.finish()
     found = np.concatenate([np.empty(0, EVENT_ROW), *gathering.events.blocks()])

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import threading
+from dataclasses import replace
 from pathlib import Path
 
 import fsspec
@@ -23,12 +24,17 @@ from recorded_fleet import EXAMPLE, mission
 from patience import PATIENCE_S, wait_for
 from pytpc.api.dask_engine import engine
 from pytpc.api.fleet_adding import AddOptions, add, missions_at
+from pytpc.api.fleet_digests import comparisons_of
 from pytpc.api.fleet_missions import Selection, missions, write_folder
+from pytpc.api.missions import with_names_of
 from pytpc.base.errors import InputError, TpcError
 from pytpc.cli.main import main
 from pytpc.fleet.store import Fleet, Place
+from pytpc.ingest.condense import condensed
 from pytpc.ingest.reading import read
+from pytpc.recording.events import Events
 from pytpc.recording.mission import load_recording
+from pytpc.static.static_info import StaticInfo
 
 pytestmark = pytest.mark.filterwarnings("ignore")
 
@@ -371,9 +377,61 @@ def test_what_is_one_mission(tmp_path: Path):
         missions_at([tmp_path / "empty"])
 
 
+# A terminal sends Ctrl-C to the workers, too: only the command answers it.
+def test_ctrl_c_with_workers_is_one_line(tmp_path: Path):
+    for number in range(12):
+        mission(tmp_path / f"recorded/r/m{number}", number)
+    command = [sys.executable, "-m", "pytpc", "fleet", "add", "fleet", "recorded"]
+    env = {**os.environ, "PYTHONPATH": str(EXAMPLE.parents[1])}
+    adding = subprocess.Popen(
+        [*command, "--cluster", "local", "--workers", "2"], cwd=tmp_path, env=env,
+        stderr=subprocess.PIPE, text=True, start_new_session=True,
+    )  # fmt: skip
+    done = tmp_path / "fleet/missions"
+    wait_for(lambda: adding.poll() is not None or any(done.rglob("part.parquet")))
+    os.killpg(adding.pid, signal.SIGINT)
+    _, errors = adding.communicate(timeout=PATIENCE_S)
+    # It may have ended just before.
+    assert adding.returncode in (0, 130)
+    assert ("pytpc: interrupted" in errors.splitlines()) == (adding.returncode == 130)
+    assert "Traceback" not in errors
+
+
 def test_condensed_reading_counts_all(tmp_path: Path):
     path = mission(tmp_path / "m", 0, marks=1)
     small = read(path, period_ns=10**10)
     whole = read(path)
     assert int(small.summaries.count.sum()) == len(whole.events)
     assert int(small.events.flop.sum()) == int(whole.events.flop.sum())
+
+
+# Three nodes, a comparison and its second instance, whose threshold is now 0 and now 8; NaN and
+# infinities; a clock that is set back by 30 s. Counts are exact, and no value is made up.
+def test_condensed_counts_of_nodes_and_instances():
+    whole = load_recording(EXAMPLE)
+    random = np.random.default_rng(1)
+    keys = sorted({*whole.events.keys[:2], f"{whole.events.keys[0]}#2"})
+    rows = 3000
+    times = np.sort(random.integers(10**18, 10**18 + 60 * 10**9, rows))
+    times[rows // 2 :] -= 30 * 10**9
+    cmp, thresh = random.normal(size=rows), random.choice([0.0, 8.0], rows)
+    cmp[::50], cmp[1::50], thresh[2::50] = np.nan, np.inf, -np.inf
+    columns = {
+        "time_ns": times, "cmp": cmp, "thresh": thresh, "result": cmp > thresh,
+        "res": cmp > thresh, "key": random.integers(0, 3, rows), "node": np.arange(rows) % 3,
+    }  # fmt: skip
+    events = Events.of(**columns, keys=keys, nodes=["/a", "/b", "/c/d"])
+    span = {"start_ns": int(events.time_ns.min()), "end_ns": int(events.time_ns.max())}
+    recording = replace(whole, events=events, marks=(), **span)
+    static = StaticInfo.load(EXAMPLE / "static.json")
+    named = with_names_of(recording, static, None)
+    exact = comparisons_of(recording, named).to_pylist()
+    small = comparisons_of(condensed(recording, 10**10), named).to_pylist()
+    names = ("key", "node", "evaluations", "turns", "first_ns", "last_ns", "first_turn_ns")
+    assert [[one[name] for name in names] for one in small] == [
+        [one[name] for name in names] for one in exact
+    ]
+    assert len(small) == 9
+    finite = np.concatenate([cmp[np.isfinite(cmp)], thresh[np.isfinite(thresh)]])
+    for one in small:
+        assert finite.min() <= one["value_low"] <= one["value_high"] <= finite.max()

@@ -1,0 +1,284 @@
+"""The store of a fleet beside others who write, on web servers, and with hostile content."""
+
+from __future__ import annotations
+
+import http.server
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import ClassVar
+from urllib.parse import quote
+
+import fsspec
+import pyarrow as pa
+import pytest
+from click.testing import CliRunner
+from fsspec.implementations.memory import MemoryFileSystem
+from recorded_fleet import mission
+
+from pytpc.api.dask_engine import engine
+from pytpc.api.fleet_adding import AddOptions, add, missions_at
+from pytpc.api.fleet_missions import opened, write_folder
+from pytpc.base.errors import InputError, TpcError
+from pytpc.cli.main import main
+from pytpc.fleet.store import Fleet, Place, shown_url
+from pytpc.fleet.tables import TABLES
+
+pytestmark = pytest.mark.filterwarnings("ignore")
+
+
+@pytest.fixture
+def fleet(tmp_path: Path) -> Fleet:
+    mission(tmp_path / "recorded/uav 1/m", 0, marks=1)
+    made = Fleet(str(tmp_path / "fleet"))
+    with engine(workers=1) as own:
+        add(made, missions_at([tmp_path / "recorded"]), AddOptions(), own)
+    return made
+
+
+def tables_of(fleet: Fleet, place: Place) -> dict[str, pa.Table]:
+    return {table: fleet.read(place, table) for table in TABLES}
+
+
+# Killed between two tables: what is there is half of each version, and must not count.
+def test_a_mission_that_is_replaced_does_not_exist_meanwhile(
+    fleet: Fleet, monkeypatch: pytest.MonkeyPatch
+):
+    (place,) = fleet.places()
+    tables = tables_of(fleet, place)
+    real, seen = Fleet._put, []
+
+    def put(self: Fleet, name: str, content: bytes) -> None:
+        seen.append((name.partition("/")[0], self.has(place)))
+        if name.startswith("values"):
+            raise KeyboardInterrupt
+        real(self, name, content)
+
+    monkeypatch.setattr(Fleet, "_put", put)
+    with pytest.raises(KeyboardInterrupt):
+        fleet.write(place, tables | {"marks": tables["marks"].slice(0, 0)})
+    assert seen
+    assert not any(exists for _, exists in seen)
+    assert fleet.places() == []
+    assert fleet.unfinished() == [place]
+
+
+def test_the_same_again_touches_nothing(fleet: Fleet, monkeypatch: pytest.MonkeyPatch):
+    (place,) = fleet.places()
+    tables = tables_of(fleet, place)
+
+    def put(self: Fleet, name: str, content: bytes) -> None:
+        pytest.fail(f"{name} is written again")
+
+    monkeypatch.setattr(Fleet, "_put", put)
+    assert fleet.write(place, tables) > 0
+
+
+# Somebody drops what is half written just before its row comes.
+def test_what_is_dropped_while_it_is_added_is_whole(fleet: Fleet, monkeypatch: pytest.MonkeyPatch):
+    (place,) = fleet.places()
+    tables = tables_of(fleet, place)
+    fleet.drop(place)
+    real = Fleet._put
+
+    def put(self: Fleet, name: str, content: bytes) -> None:
+        if name.startswith("missions"):
+            monkeypatch.setattr(Fleet, "_put", real)
+            self.drop(place)
+        real(self, name, content)
+
+    monkeypatch.setattr(Fleet, "_put", put)
+    fleet.write(place, tables)
+    assert tables_of(fleet, place) == tables
+
+
+# Its row comes while its tables are removed: all of it goes.
+def test_what_is_added_while_it_is_dropped_is_gone(fleet: Fleet, monkeypatch: pytest.MonkeyPatch):
+    (place,) = fleet.places()
+    tables = tables_of(fleet, place)
+    real = Fleet._remove
+
+    def remove(self: Fleet, name: str) -> None:
+        real(self, name)
+        if name.startswith("marks"):
+            monkeypatch.setattr(Fleet, "_remove", real)
+            self.write(place, tables)
+            real(self, name)
+
+    monkeypatch.setattr(Fleet, "_remove", remove)
+    fleet.drop(place)
+    assert fleet.places() == []
+    assert fleet.unfinished() == []
+
+
+# The reader has the row, and another version comes before it reads the reports.
+def test_a_reader_sees_one_version(fleet: Fleet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    (place,) = fleet.places()
+    real = Fleet.read
+
+    def read(self: Fleet, where: Place, table: str, columns=None) -> pa.Table:
+        if table == "reports":
+            monkeypatch.setattr(Fleet, "read", real)
+            with engine(workers=1) as own:
+                add(self, missions_at([tmp_path / "recorded"]), AddOptions(keep="full"), own)
+        return real(self, where, table, columns)
+
+    monkeypatch.setattr(Fleet, "read", read)
+    with opened(fleet, place) as found:
+        assert len(found.run.recording.events) == 3000
+        assert len(found.run.recording.summaries) == 0
+
+
+def test_a_folder_that_somebody_removes_while_it_is_empty(
+    fleet: Fleet, monkeypatch: pytest.MonkeyPatch
+):
+    (place,) = fleet.places()
+    tables = tables_of(fleet, place)
+    fleet.drop(place)
+    real, removed = Path.mkdir, []
+
+    def mkdir(self: Path, *words: object, **named: object) -> None:
+        real(self, *words, **named)
+        if self.name.startswith("mission=") and self not in removed:
+            removed.append(self)
+            self.rmdir()
+
+    monkeypatch.setattr(Path, "mkdir", mkdir)
+    fleet.write(place, tables)
+    assert removed
+    assert fleet.places() == [place]
+
+
+def test_two_who_begin_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    fleet = Fleet(str(tmp_path / "fleet"))
+    real, asked = Fleet._has, []
+
+    def has(self: Fleet, name: str) -> bool:
+        found = real(self, name)
+        if not asked:
+            asked.append(name)
+            # The other one is about to put its file in place, and does so.
+            self.begin()
+        return found
+
+    monkeypatch.setattr(Fleet, "_has", has)
+    fleet.begin()
+    fleet.check()
+    other = tmp_path / "other"
+    other.mkdir()
+    (other / ".fleet.json.1f").touch()
+    Fleet(str(other)).begin()
+
+
+# --- hostile data sets
+
+
+@pytest.mark.parametrize("name", ["/", "../../", "."])
+def test_a_mission_whose_name_is_a_path(fleet: Fleet, tmp_path: Path, name: str):
+    (good,) = fleet.places()
+    named = name if name == "." else f"{name if name != '/' else ''}{tmp_path}/planted"
+    place = Place("a", "2026-11-30", named)
+    fleet.write(place, tables_of(fleet, good))
+    with opened(fleet, place) as found:
+        assert len(found.run.recording.events)
+    assert not (tmp_path / "planted").exists()
+
+
+def test_a_build_whose_name_is_a_path(fleet: Fleet, tmp_path: Path):
+    (tmp_path / "secret.json").write_text("{}")
+    with pytest.raises(InputError, match=r"information of build \.\./\.\./secret is missing"):
+        fleet.build("../../secret")
+
+
+# --- stores
+
+
+class _Cached(MemoryFileSystem):
+    """A store that remembers what it listed, as those of clouds do."""
+
+    protocol = "cached-listings"
+    listed: ClassVar[dict[str, list[str]]] = {}
+    seen: ClassVar[dict[str, bool]] = {}
+
+    def find(self, path, *args, **kwargs):
+        if path not in self.listed:
+            self.listed[path] = super().find(path, *args, **kwargs)
+        return self.listed[path]
+
+    def exists(self, path, **kwargs):
+        return self.seen.setdefault(path, super().exists(path, **kwargs))
+
+    def invalidate_cache(self, path=None):
+        self.listed.clear()
+        self.seen.clear()
+
+
+def test_what_others_wrote_meanwhile_counts(fleet: Fleet):
+    fsspec.register_implementation("cached-listings", _Cached, clobber=True)
+    store = Fleet("cached-listings://fleet")
+    (place,) = fleet.places()
+    try:
+        assert store.places() == []
+        assert not store.has(place)
+        path = f"missions/{place.folder}/part.parquet"
+        MemoryFileSystem().pipe_file(store._at_store(path), fleet._get(path))
+        assert store.places() == [place]
+        assert store.has(place)
+    finally:
+        MemoryFileSystem.store.clear()
+
+
+# What keeps copies of files of a store is no folder of this machine.
+def test_a_store_with_copies_is_no_folder(tmp_path: Path):
+    try:
+        store = Fleet("filecache::memory://fleet", options={"filecache": {"cache_storage": "TMP"}})
+        assert not store._is_local
+        assert Fleet(str(tmp_path))._is_local
+        assert Fleet(f"file://{tmp_path}")._is_local
+    finally:
+        MemoryFileSystem.store.clear()
+
+
+@pytest.fixture
+def server(tmp_path: Path) -> Iterator[str]:
+    pytest.importorskip("aiohttp")
+
+    class Handler(http.server.SimpleHTTPRequestHandler):
+        def __init__(self, *words, **named):
+            super().__init__(*words, directory=str(tmp_path), **named)
+
+        def log_message(self, *_: object) -> None:
+            pass
+
+    made = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+    thread = threading.Thread(target=made.serve_forever, daemon=True)
+    thread.start()
+    yield f"http://127.0.0.1:{made.server_port}"
+    made.shutdown()
+    made.server_close()
+
+
+def test_a_data_set_on_a_web_server(fleet: Fleet, server: str, tmp_path: Path):
+    store = Fleet(f"{server}/fleet")
+    (place,) = fleet.places()
+    assert place.robot == "uav 1"
+    assert quote(place.robot, safe="") == "uav%201"
+    assert store.places() == [place]
+    assert store.has(place)
+    assert tables_of(store, place) == tables_of(fleet, place)
+    assert store.bytes_of() == fleet.bytes_of()
+    write_folder(store, place, tmp_path / "again")
+    with pytest.raises(TpcError, match="the store says"):
+        store.drop(place)
+    assert fleet.places() == [place]
+
+
+def test_passwords_are_not_printed():
+    assert shown_url("sftp://ana:a@b@host/x") == "sftp://host/x"
+    assert shown_url("filecache::ftp://u:p@h/x") == "filecache::ftp://h/x"
+    assert shown_url("/data/ana@home") == "/data/ana@home"
+    for url in ("nosuch://ana:secret@host/fleet", "sftp://ana:secret@127.0.0.1:9/fleet"):
+        done = CliRunner().invoke(main, ["fleet", "list", url])
+        assert done.exit_code == 1
+        assert "secret" not in done.output
+        assert "127.0.0.1:9/fleet" in done.stderr or "nosuch://host/fleet: " in done.stderr
