@@ -32,9 +32,9 @@ from pytpc.diagnosis.thinned import thinned
 from pytpc.fleet.store import Fleet, Place
 from pytpc.recording.mission import load_recording
 
-MOST_BAD = 48
+MOST_BAD = 24
 """So many bad missions are judged one by one, spread over robots and days: more say hardly more."""
-GOOD_OWN, GOOD_OTHERS = 4, 4
+GOOD_OWN, GOOD_OTHERS = 3, 4
 """So many good missions of its robot, and of its sisters, stand beside each of them."""
 
 JUDGED = pa.schema(
@@ -85,8 +85,9 @@ def judged(
         on_progress: called with (done, in all).
     """
     good = [one for one in found if not one.is_bad]
+    shared = spread(good, 2 * GOOD_OTHERS)
     jobs = [
-        _Job(fleet, bad, tuple(one.place for one in _beside(bad, good)), build)
+        _Job(fleet, bad, tuple(one.place for one in _beside(bad, good, shared)), build)
         for bad in spread([one for one in found if one.is_bad and one.marks], MOST_BAD)
     ]
     return engine.joined(_judged, jobs, _joined, on_progress)
@@ -135,15 +136,23 @@ def spread(found: Sequence[FleetMission], most: int) -> list[FleetMission]:
     return sorted(chosen, key=lambda one: one.place)
 
 
-def _beside(bad: FleetMission, good: Sequence[FleetMission]) -> list[FleetMission]:
-    """The good missions that stand beside a bad one: the nearest in time."""
+def _beside(
+    bad: FleetMission, good: Sequence[FleetMission], shared: Sequence[FleetMission]
+) -> list[FleetMission]:
+    """The good missions that stand beside a bad one.
+
+    Args:
+        bad: it.
+        good: all good ones; the nearest in time of its robot count.
+        shared: some of all robots, the same for all bad ones: a worker reads each only once.
+    """
 
     def nearest(one: FleetMission) -> tuple[int, Place]:
         return abs(one.start_ns - bad.start_ns), one.place
 
     own = sorted((one for one in good if one.place.robot == bad.place.robot), key=nearest)
-    rest = spread([one for one in good if one.place.robot != bad.place.robot], GOOD_OTHERS)
-    return [*own[:GOOD_OWN], *rest]
+    others = [one for one in shared if one.place.robot != bad.place.robot]
+    return [*own[:GOOD_OWN], *others[:GOOD_OTHERS]]
 
 
 def _judged(job: _Job) -> Judged:

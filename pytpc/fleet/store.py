@@ -196,7 +196,9 @@ class Fleet:
             return wanted.empty_table()
         path = self._path_of(_file(table, place))
         try:
-            found = pq.read_table(io.BytesIO(content), columns=wanted.names)
+            # `read_table` takes six times as long for a file of some hundred rows.
+            file = pq.ParquetFile(pa.BufferReader(content))
+            found = file.read(columns=wanted.names, use_threads=False).select(wanted.names)
             return found.cast(wanted).replace_schema_metadata(None)
         except (pa.ArrowException, KeyError, ValueError, OSError) as error:
             why = str(error).partition("\n")[0]
