@@ -9,11 +9,22 @@ import stat
 import subprocess
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from types import FrameType
 from typing import Any, AnyStr
 
 _TURN_S = 0.1
+
+
+@contextlib.contextmanager
+def _handling(handlers: Mapping[int, Any]) -> Iterator[None]:
+    """Give signals these handlers within the block, and then those that they had."""
+    before = {number: signal.signal(number, handler) for number, handler in handlers.items()}
+    try:
+        yield
+    finally:
+        for number, earlier in before.items():
+            signal.signal(number, earlier)
 
 
 @contextlib.contextmanager
@@ -30,15 +41,13 @@ def signals_end() -> Iterator[None]:
     def leave(number: int, _frame: FrameType | None) -> None:
         raise SystemExit(128 + number)
 
-    ends = [signal.SIGTERM] if _hang_up_is_ignored() else [signal.SIGTERM, signal.SIGHUP]
-    before = {number: signal.signal(number, leave) for number in ends}
+    handlers: dict[int, Any] = {signal.SIGTERM: leave}
+    if not _hang_up_is_ignored():
+        handlers[signal.SIGHUP] = leave
     if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
-        before[signal.SIGINT] = signal.signal(signal.SIGINT, lambda *_: None)
-    try:
+        handlers[signal.SIGINT] = lambda *_: None
+    with _handling(handlers):
         yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 @contextlib.contextmanager
@@ -56,16 +65,12 @@ def running(
         sigterm_s: see `end_group`.
     """
     held: list[int] = []
-    before: dict[int, Any] = {}
+    heard: list[int] = []
     if threading.current_thread() is threading.main_thread():
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            if signal.getsignal(number) != signal.SIG_IGN:
-                before[number] = signal.signal(number, lambda came, _frame: held.append(came))
-    try:
+        every = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+        heard = [number for number in every if signal.getsignal(number) != signal.SIG_IGN]
+    with _handling(dict.fromkeys(heard, lambda came, _frame: held.append(came))):
         process = start()
-    finally:
-        for known, handler in before.items():
-            signal.signal(known, handler)
     with process:
         try:
             for late in held:
@@ -81,12 +86,8 @@ def stop_on_signals() -> Iterator[threading.Event]:
     """An event that SIGINT and SIGTERM set within the block, instead of ending the process."""
     stop = threading.Event()
     numbers = (signal.SIGINT, signal.SIGTERM)
-    before = {number: signal.signal(number, lambda *_: stop.set()) for number in numbers}
-    try:
+    with _handling(dict.fromkeys(numbers, lambda *_: stop.set())):
         yield stop
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 class Stop:
@@ -141,15 +142,11 @@ class Stop:
                     os.write(2, f"\n{self._reply}\n".encode())
             self.set_again()
 
-        handlers = {signal.SIGINT: ask, signal.SIGTERM: ask}
+        handlers: dict[int, Any] = {signal.SIGINT: ask, signal.SIGTERM: ask}
         if not _hang_up_is_ignored():
             handlers[signal.SIGHUP] = hang_up
-        before = {number: signal.signal(number, handler) for number, handler in handlers.items()}
-        try:
+        with _handling(handlers):
             yield
-        finally:
-            for number, earlier in before.items():
-                signal.signal(number, earlier)
 
 
 def _hang_up_is_ignored() -> bool:
