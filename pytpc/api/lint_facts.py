@@ -291,7 +291,7 @@ def _pieces(units: Iterable[LinkUnit], reads: Iterable[NodeRead]) -> frozenset[s
     """The texts that names are put together of, in the files with reads of such names."""
     files = {read.spot.path for read in reads if is_anything(read)}
     roots = sorted({unit.source_root for unit in units}) if files else []
-    found = (source_texts(root).pieces.get(file, ()) for root in roots for file in sorted(files))
+    found = (source_texts(root).pieces(file) for root in roots for file in sorted(files))
     return frozenset[str]().union(*found)
 
 

@@ -76,7 +76,7 @@ class SourceTexts:
     ``turned`` what is handed, as it is, to a function that takes one in radians.
     ``renamings`` are calls of functions that deal with old names, ``renamers`` the functions of
     this kind that are defined here: which of their texts, from 0, is the old name.
-    ``pieces`` are texts, by file, that others are added to, or that have places for others.
+    ``files`` are all of its files.
     """
 
     texts: dict[str, list[tuple[str, int]]]
@@ -86,7 +86,7 @@ class SourceTexts:
     turned: frozenset[str] = frozenset()
     renamings: tuple[Renaming, ...] = ()
     renamers: Mapping[str, tuple[int, str]] = field(default_factory=dict)
-    pieces: Mapping[str, frozenset[str]] = field(default_factory=dict)
+    files: frozenset[str] = frozenset()
 
     def unread(self, reads: Collection[tuple[str, int]], *, python: bool) -> frozenset[str]:
         """The texts in the files of a language at other places than beside one of these reads."""
@@ -96,6 +96,10 @@ class SourceTexts:
             for text, places in self.texts.items()
             if any(place not in beside for place in places if place[0].endswith(_CPP) is not python)
         )
+
+    def pieces(self, file: str) -> frozenset[str]:
+        """The texts in a file that others are added to, or that have places for others."""
+        return _pieces_in(file) if file in self.files else frozenset()
 
     def converts(self, name: str) -> bool:
         """Whether what has the name of a parameter is converted from degrees somewhere."""
@@ -120,10 +124,9 @@ def source_texts(package: str) -> SourceTexts:
     reads_all = False
     renamings: list[Renaming] = []
     renamers: dict[str, tuple[int, str]] = {}
-    pieces: dict[str, frozenset[str]] = {}
-    for path in _sources(package):
+    paths = list(_sources(package))
+    for path in paths:
         lines = _read(path)
-        pieces[str(path)] = frozenset(piece for line in lines for piece in _pieces(line))
         for lineno, line in enumerate(lines, start=1):
             for one, other in _TEXT.findall(line):
                 text = one or other
@@ -145,8 +148,13 @@ def source_texts(package: str) -> SourceTexts:
         frozenset(turned),
         tuple(renamings),
         renamers,
-        pieces,
+        frozenset(map(str, paths)),
     )
+
+
+@lru_cache(maxsize=256)
+def _pieces_in(file: str) -> frozenset[str]:
+    return frozenset(piece for line in _read(Path(file)) for piece in _pieces(line))
 
 
 def _pieces(line: str) -> Iterator[str]:

@@ -216,11 +216,18 @@ class Facts:
         """Whether a parameter, or one below it, is set."""
         return name in self.by_name or name in self._tables
 
-    def readers(self, name: str) -> Iterator[tuple[Node, NodeRead]]:
+    @cached_property
+    def _readers(self) -> dict[str, tuple[tuple[Node, NodeRead], ...]]:
+        """What ``readers`` has looked up: most kinds of findings ask for the same names."""
+        return {}
+
+    def readers(self, name: str) -> tuple[tuple[Node, NodeRead], ...]:
         """All reads that may be of a parameter, with their nodes."""
-        for node in self.nodes:
-            for read in node.reads_of(name):
-                yield node, read
+        found = self._readers.get(name)
+        if found is None:
+            found = tuple((node, read) for node in self.nodes for read in node.reads_of(name))
+            self._readers[name] = found
+        return found
 
     def owners(self, name: str) -> list[Node]:
         """The nodes in whose own namespace a parameter is; of nested ones the innermost."""

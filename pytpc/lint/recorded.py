@@ -14,7 +14,7 @@ def without_effect(facts: Facts) -> Iterator[Finding]:
     """Changes of values that nodes read only while they start."""
     seen = set()
     for change in facts.changes:
-        readers = list(facts.readers(change.name))
+        readers = facts.readers(change.name)
         if change.name in seen or not readers or change.old is None or change.new is None:
             continue
         if any(not read.at_start or not read.is_exact for _, read in readers):

@@ -60,7 +60,7 @@ def unread(facts: Facts) -> Unread:
     reasons = defaultdict(set)
     used = set()
     for setting in facts.settings:
-        reads = list(facts.readers(setting.name))
+        reads = facts.readers(setting.name)
         is_named = any(not is_anything(read) for _, read in reads)
         if is_named or _is_of_ros(setting.name):
             used.add(setting.spot)
@@ -86,19 +86,17 @@ def _may_be(facts: Facts, setting: Setting, node: Node, read: NodeRead) -> bool:
     arguments of the node. One of which nothing is known may be made of these alone: otherwise, one
     such call would hide all misspelt names.
     """
-    end = last_part(read.name)
-    if end != DYNAMIC:
+    if last_part(read.name) != DYNAMIC:
         return True
-    words = facts.words | node.words
-    parts = {last_part(setting.name), own_part(setting.name)}
-    if not parts.isdisjoint(words | node.texts):
-        return True
+    known = facts.words, node.words, node.texts
     own = own_part(setting.name)
+    if any(last_part(setting.name) in words or own in words for words in known):
+        return True
     if any(own.startswith(piece) or own.endswith(piece) for piece in node.pieces):
         return True
     # It may be the name of a table with the value in it; what is read one by one is none.
     above_it = setting.name.split("/")[:-1]
-    is_in_table = read.is_table and not words.union(node.texts).isdisjoint(above_it)
+    is_in_table = read.is_table and any(not words.isdisjoint(above_it) for words in known)
     return is_in_table and namespace(setting.name) not in facts.read_one_by_one
 
 
