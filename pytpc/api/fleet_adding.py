@@ -5,25 +5,26 @@ from __future__ import annotations
 import glob
 import hashlib
 import os
-import re
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timezone
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Literal, NamedTuple, get_args
+from typing import Literal, NamedTuple, get_args
 
 import pyarrow as pa
 
 from pytpc.api.comparing import RecordedRun
 from pytpc.api.dask_engine import Engine
 from pytpc.api.fleet_digests import comparisons_of, files_of, marks_of, mission_id, values_of
+from pytpc.api.fleet_missions import FleetMission, missions_in
 from pytpc.api.missions import check_reports, load_static, with_names_of
 from pytpc.api.static_of_mission import find_static, recorded_static
 from pytpc.base.checked_json import dump_json
 from pytpc.base.closest import path_hint
 from pytpc.base.errors import InputError, TpcError
+from pytpc.base.legal_names import file_part
 from pytpc.base.wording import plain
 from pytpc.fleet.store import FLEET_FILE, Fleet, Place
 from pytpc.fleet.tables import MISSIONS, Table
@@ -43,7 +44,6 @@ PERIOD_NS = 10 * 10**9
 """Of a comparison there is a summary for each period of this length in which it was evaluated."""
 _BAGS = (".bag", ".mcap", ".db3")
 _RECORDED = (*_BAGS, ".tpc", ".parquet", ".log")
-_NAME = 60
 _MOST_FILES = 10_000
 _FIRST_REAL_NS = 10**18
 """Before 2001 no robot had reports: such a clock is simulated, or was never set."""
@@ -197,7 +197,10 @@ def add(
     fleet.begin()
     before = fleet.places()
     robots = {one.robot for one in given}
-    known = _known(fleet, [place for place in before if place.robot in robots], engine)
+    own = missions_in(fleet, engine, [place for place in before if place.robot in robots])
+    known: defaultdict[tuple[str, str], list[FleetMission]] = defaultdict(list)
+    for mission in own.found:
+        known[mission.place.robot, mission.source].append(mission)
     build = None if options.static is None else _hash(_merged(options.static)[1])
     jobs = []
     found: dict[int, Added] = {}
@@ -210,8 +213,8 @@ def add(
         except OSError as error:
             found[number] = Added(one.path, why=f"cannot be read: {error.strerror or error}")
             continue
-        earlier = known.get((one.robot, _source(one.path)), ())
-        there = [own for own in earlier if own.is_as_asked(stamp, build, options)]
+        earlier = known[one.robot, _source(one.path)]
+        there = [mission for mission in earlier if _is_as_asked(mission, stamp, build, options)]
         if there and not options.again:
             found[number] = Added(one.path, there[0].place)
         else:
@@ -242,54 +245,22 @@ def _told(made: Iterable[Added], before: Iterable[Place]) -> list[Added]:
     return told
 
 
-class _Earlier(NamedTuple):
-    """What is there of a recording."""
-
-    place: Place
-    stamp: str
-    keep: str
-    verdict: str
-    build: str
-    start_ns: int
-
-    def is_as_asked(self, stamp: str, build: str | None, options: AddOptions) -> bool:
-        """Whether it is the same files; what nobody asks for now may be as somebody asked then."""
-        return (
-            self.stamp == stamp
-            and self.keep in {options.keep, "full"}
-            and options.verdict in {None, self.verdict}
-            and options.day in {None, self.place.day}
-            and build in {None, self.build}
-        )
-
-    def is_replaced_by(self, place: Place, start_ns: int) -> bool:
-        """Whether a mission of the same path is the same one, longer or on another day."""
-        is_same = self.place.mission == place.mission
-        grew = self.start_ns == start_ns >= _FIRST_REAL_NS
-        return self.place != place and (is_same or grew)
+def _is_as_asked(earlier: FleetMission, stamp: str, build: str | None, options: AddOptions) -> bool:
+    """Whether what is there is of the same files; other options may be as somebody asked then."""
+    return (
+        earlier.stamp == stamp
+        and earlier.keep in {options.keep, "full"}
+        and options.verdict in {None, earlier.verdict}
+        and options.day in {None, earlier.place.day}
+        and build in {None, earlier.build}
+    )
 
 
-def _known(
-    fleet: Fleet, places: Sequence[Place], engine: Engine
-) -> dict[tuple[str, str], list[_Earlier]]:
-    """The missions that are there, by robot and source."""
-    rows = engine.map(_row, [(fleet, place) for place in places])
-    found: dict[tuple[str, str], list[_Earlier]] = {}
-    for place, row in zip(places, rows, strict=True):
-        if row is not None:
-            earlier = found.setdefault((place.robot, row.pop("source")), [])
-            earlier.append(_Earlier(place, **row))
-    return found
-
-
-def _row(job: tuple[Fleet, Place]) -> dict[str, Any] | None:
-    fleet, place = job
-    columns = ["source", "stamp", "keep", "verdict", "build", "start_ns"]
-    try:
-        (row,) = fleet.read(place, "missions", columns).to_pylist()
-    except (InputError, ValueError):
-        return None
-    return dict(row)
+def _is_replaced_by(earlier: FleetMission, place: Place, start_ns: int) -> bool:
+    """Whether a mission of the same path is the same one, longer or on another day."""
+    is_same = earlier.place.mission == place.mission
+    grew = earlier.start_ns == start_ns >= _FIRST_REAL_NS
+    return earlier.place != place and (is_same or grew)
 
 
 def _source(path: Path) -> str:
@@ -331,7 +302,7 @@ class _Job(NamedTuple):
     given: Given
     options: AddOptions
     stamp: str
-    earlier: tuple[_Earlier, ...]
+    earlier: tuple[FleetMission, ...]
 
 
 def _added(job: _Job) -> Added:
@@ -390,7 +361,7 @@ def _added_anew(job: _Job) -> Added:
     place = Place(robot, day, mission_id(_name_of(path), comparisons))
     size = fleet.write(place, tables)
     start_ns = recording.start_ns
-    replaced = tuple(one.place for one in earlier if one.is_replaced_by(place, start_ns))
+    replaced = tuple(one.place for one in earlier if _is_replaced_by(one, place, start_ns))
     for one in replaced:
         fleet.drop(one)
     return Added(path, place, True, evaluations, size, notes, replaced=replaced)
@@ -424,8 +395,7 @@ def _hash(content: bytes) -> str:
 
 
 def _name_of(path: Path) -> str:
-    name = path.name if path.is_dir() else path.stem
-    return re.sub(r"[^A-Za-z0-9_.-]+", "-", name).strip(".-")[:_NAME] or "mission"
+    return file_part(path.name if path.is_dir() else path.stem, "mission")
 
 
 def _day_of(recording: Recording, path: Path, given: str | None) -> tuple[str, tuple[str, ...]]:

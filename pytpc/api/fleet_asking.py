@@ -302,10 +302,9 @@ def learn_good(
         raise InputError("no good missions: add some, or select others", shown_url(fleet.url))
     learned = []
     for number, one in enumerate(chosen, start=1):
-        with opened(fleet, one.place) as mission:
-            source = mission.run.source
-            assert source is not None, "it was written to a folder"
-            learned.append(learn(mission.run.recording, source, profile))
+        with opened(fleet, one.place) as run:
+            assert run.source is not None, "it was written to a folder"
+            learned.append(learn(run.recording, run.source, profile))
         if on_progress is not None:
             on_progress(number, len(chosen))
     return learned
@@ -349,11 +348,9 @@ def turn_query(
     named: dict[str, Any] = {"within": within, "low": low, "high": high, "had": had}
     if _KEY.fullmatch(where):
         return TurnQuery(key=where, **named)
-    return (
-        TurnQuery(place=where, **named)
-        if _PLACE.fullmatch(where)
-        else TurnQuery(parameter=where, **named)
-    )
+    if _PLACE.fullmatch(where):
+        return TurnQuery(place=where, **named)
+    return TurnQuery(parameter=where, **named)
 
 
 def find(
@@ -392,7 +389,7 @@ def _turns(job: _Search) -> tuple[tuple[FoundTurn, ...], tuple[Unread, ...]]:
     try:
         static = build_of(job.fleet, job.build)
         with opened(job.fleet, job.place) as mission:
-            run = mission.run.in_build(static)
+            run = mission.in_build(static)
             named = with_names_of(run.recording, static, run.source)
             at_first = run.values.values or {}
             values = ParameterValues(

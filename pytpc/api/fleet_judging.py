@@ -161,7 +161,7 @@ def _judged(job: _Job) -> Judged:
         static = build_of(job.fleet, job.build)
         good = [_good(job.fleet, place) for place in job.good]
         with opened(job.fleet, job.bad.place) as mission:
-            run = mission.run.in_build(static)
+            run = mission.in_build(static)
             asked = AskedMission.of(
                 run, static, Question(declared=()), [one.run for one in good if one is not None]
             )

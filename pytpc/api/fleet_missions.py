@@ -27,7 +27,8 @@ from pytpc.fleet.tables import COMMIT, MISSIONS
 from pytpc.recording.mission import EVENTS_FILE, SUMMARIES_FILE, load_recording
 from pytpc.static.static_info import StaticInfo
 
-_TOLD = tuple(name for name in MISSIONS.names if name not in {"files", "stamp"})
+_ROW = tuple(name for name in MISSIONS.names if name != "files")
+_TOLD = tuple(name for name in _ROW if name != "stamp")
 _NAME = 200
 _TRIES = 5
 _TOGETHER = 16
@@ -52,6 +53,7 @@ class FleetMission:
     marks: int
     seconds: float
     notes: tuple[str, ...]
+    stamp: str = ""
 
     @property
     def is_bad(self) -> bool:
@@ -59,9 +61,9 @@ class FleetMission:
         return self.verdict == "bad"
 
     def to_json(self) -> dict[str, Any]:
-        """All of it as plain data."""
+        """What a person may ask for, as plain data."""
         document = asdict(self)
-        del document["place"]
+        del document["place"], document["stamp"]
         return {**self.place._asdict(), **document}
 
 
@@ -136,9 +138,19 @@ def missions(
             hint = did_you_mean(robot, known)
             raise InputError(f"has no robot {plain(robot)}{hint}", shown_url(fleet.url))
     places = [place for place in every if selection.has_place(place)]
-    parts = [(fleet, tuple(places[at : at + _TOGETHER])) for at in range(0, len(places), _TOGETHER)]
-    read = engine.joined(_read, parts, _joined, on_progress)
+    read = missions_in(fleet, engine, places, on_progress)
     return Missions(tuple(one for one in read.found if selection.has(one)), read.unread)
+
+
+def missions_in(
+    fleet: Fleet,
+    engine: Engine,
+    places: Sequence[Place],
+    on_progress: Callable[[int, int], None] | None = None,
+) -> Missions:
+    """The missions at places, but for those that somebody removed meanwhile; see ``missions``."""
+    parts = [(fleet, tuple(places[at : at + _TOGETHER])) for at in range(0, len(places), _TOGETHER)]
+    return engine.joined(_read, parts, _joined, on_progress)
 
 
 def _read(part: tuple[Fleet, tuple[Place, ...]]) -> Missions:
@@ -147,7 +159,7 @@ def _read(part: tuple[Fleet, tuple[Place, ...]]) -> Missions:
     found, unread = [], []
     for place in places:
         try:
-            (row,) = fleet.read(place, COMMIT, _TOLD).to_pylist()
+            (row,) = fleet.read(place, COMMIT, _ROW).to_pylist()
         except InputError as error:
             unread.append(Unread(place, error.message))
             continue
@@ -200,16 +212,13 @@ def meant(fleet: Fleet, name: str) -> Place:
     raise InputError(what, shown_url(fleet.url))
 
 
-def write_folder(fleet: Fleet, place: Place, folder: Path) -> str:
+def write_folder(fleet: Fleet, place: Place, folder: Path) -> None:
     """Write a mission as a folder that all other commands take.
 
     Args:
         fleet: the data set.
         place: of the mission.
         folder: a new or empty one.
-
-    Returns:
-        The name of its build.
 
     Raises:
         InputError: the mission is broken or not there, or the folder has something in it.
@@ -218,8 +227,7 @@ def write_folder(fleet: Fleet, place: Place, folder: Path) -> str:
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise InputError("is there already; give a new -o FOLDER", folder)
     row, events, summaries = _whole(fleet, place)
-    build = str(row["build"])
-    files = dict(row["files"]) | {MERGED_FILE: fleet.build(build)}
+    files = dict(row["files"]) | {MERGED_FILE: fleet.build(str(row["build"]))}
     tables = {EVENTS_FILE: events}
     if len(summaries):
         tables[SUMMARIES_FILE] = summaries
@@ -239,7 +247,6 @@ def write_folder(fleet: Fleet, place: Place, folder: Path) -> str:
             shutil.rmtree(staged, ignore_errors=True)
     except OSError as error:
         raise TpcError(f"cannot be written: {error.strerror or error}", folder) from error
-    return build
 
 
 def _whole(fleet: Fleet, place: Place) -> tuple[dict[str, Any], pa.Table, pa.Table]:
@@ -260,13 +267,6 @@ def _whole(fleet: Fleet, place: Place) -> tuple[dict[str, Any], pa.Table, pa.Tab
     raise InputError(f"{named} is replaced again and again; try later", shown_url(fleet.url))
 
 
-class Opened(NamedTuple):
-    """A mission of a data set as a run, and the static information of its build."""
-
-    run: RecordedRun
-    static: StaticInfo
-
-
 def folder_name(place: Place) -> str:
     """The name of a mission as that of a folder: in somebody else's data set it may be a path.
 
@@ -277,7 +277,7 @@ def folder_name(place: Place) -> str:
 
 
 @contextmanager
-def opened(fleet: Fleet, place: Place) -> Iterator[Opened]:
+def opened(fleet: Fleet, place: Place) -> Iterator[RecordedRun]:
     """A mission as all other functions take one; its folder is there until the end of the block.
 
     Raises:
@@ -286,9 +286,8 @@ def opened(fleet: Fleet, place: Place) -> Iterator[Opened]:
     """
     with tempfile.TemporaryDirectory(prefix="pytpc-fleet-") as scratch:
         folder = Path(scratch) / folder_name(place)
-        build = write_folder(fleet, place, folder)
-        run = RecordedRun(load_recording(folder), folder)
-        yield Opened(run, build_of(fleet, build))
+        write_folder(fleet, place, folder)
+        yield RecordedRun(load_recording(folder), folder)
 
 
 @lru_cache(maxsize=4)

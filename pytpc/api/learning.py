@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import re
 import shutil
 import tempfile
 from dataclasses import replace
@@ -16,6 +15,7 @@ from pytpc.api.comparing import RecordedRun
 from pytpc.api.missions import check_has_reports
 from pytpc.api.static_of_mission import recorded_static
 from pytpc.base.errors import InputError, TpcError
+from pytpc.base.legal_names import file_part
 from pytpc.base.paths import MERGED_FILE
 from pytpc.diagnosis.thinned import thinned
 from pytpc.recording.graph_file import GRAPH_FILE
@@ -30,9 +30,6 @@ from pytpc.recording.profile import (
 )
 from pytpc.values.origins import PARAMS_FILE, origins_file
 from pytpc.values.recording import params_file
-
-_NAME = 60
-"""Characters of a recording's name in that of its folder."""
 
 
 def learn(recording: Recording, source: Path, profile: Path) -> LearnedRun:
@@ -58,7 +55,7 @@ def learn(recording: Recording, source: Path, profile: Path) -> LearnedRun:
     where = str(source.absolute())
     reports = len(recording.events) + len(recording.summaries)
     digest = reports_digest(recording)
-    name = re.sub(r"[^A-Za-z0-9_.-]+", "-", source.absolute().name).strip(".-")[:_NAME] or "run"
+    name = file_part(source.absolute().name, "run")
     run = LearnedRun(
         f"{name}-{digest[:8]}", where, recording.start_ns, recording.end_ns, reports, digest
     )

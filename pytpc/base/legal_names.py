@@ -11,6 +11,7 @@ import re
 _LONGEST_PART = 60
 _LONGEST = 200
 _OTHER = re.compile(r"[^A-Za-z0-9]+")
+_NOT_IN_FILES = re.compile(r"[^A-Za-z0-9_.-]+")
 
 
 def legal_part(text: str) -> str:
@@ -21,6 +22,15 @@ def legal_part(text: str) -> str:
     """
     part = _OTHER.sub("_", text).strip("_")[:_LONGEST_PART].rstrip("_")
     return part if part[:1].isalpha() else f"x{part}"
+
+
+def file_part(text: str, otherwise: str) -> str:
+    """A part of a file's name, as like the text as may be; ``otherwise`` where nothing is left.
+
+    >>> file_part("monday (2)", "run"), file_part("...", "run")
+    ('monday-2', 'run')
+    """
+    return _NOT_IN_FILES.sub("-", text).strip(".-")[:_LONGEST_PART] or otherwise
 
 
 def legal_name(text: str) -> str:

@@ -125,8 +125,8 @@ def test_a_reader_sees_one_version(fleet: Fleet, tmp_path: Path, monkeypatch: py
 
     monkeypatch.setattr(Fleet, "read", read)
     with opened(fleet, place) as found:
-        assert len(found.run.recording.events) == 3000
-        assert len(found.run.recording.summaries) == 0
+        assert len(found.recording.events) == 3000
+        assert len(found.recording.summaries) == 0
 
 
 def test_a_folder_that_somebody_removes_while_it_is_empty(
@@ -180,7 +180,7 @@ def test_a_mission_whose_name_is_a_path(fleet: Fleet, tmp_path: Path, name: str)
     place = Place("a", "2026-11-30", named)
     fleet.write(place, tables_of(fleet, good))
     with opened(fleet, place) as found:
-        assert len(found.run.recording.events)
+        assert len(found.recording.events)
     assert not (tmp_path / "planted").exists()
 
 
