@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import pyarrow as pa
 
@@ -47,6 +47,7 @@ from pytpc.recording.profile import LearnedRun
 from pytpc.static.other_builds import keys_in, renamed
 
 Progress = Callable[[int, int], None]
+Answer_co = TypeVar("Answer_co", covariant=True)
 
 _OF_MISSION = ("mission", "robot", "day", "verdict")
 _TOGETHER = 32
@@ -203,11 +204,11 @@ def _joined(parts: list[Digests]) -> Digests:
     )
 
 
-class Ranked(NamedTuple):
-    """Which parameter makes missions go wrong, and the missions that could not be read."""
+@dataclass(frozen=True)
+class Answered(Generic[Answer_co]):
+    """The answer to a question, and the missions that could not be read for it."""
 
-    ranking: FleetRanking
-    missions: tuple[FleetMission, ...]
+    answer: Answer_co
     unread: tuple[Unread, ...]
 
 
@@ -216,7 +217,7 @@ def rank(
     engine: Engine,
     selection: Selection = EVERY,
     on_progress: Progress | None = None,
-) -> Ranked:
+) -> Answered[FleetRanking]:
     """Which parameter makes the bad missions of a fleet go wrong.
 
     Args:
@@ -236,14 +237,7 @@ def rank(
     notes = notes_on(asked.missions, rows, unread)
     ranking = rank_fleet(rows, values=asked.digests.values, diagnoses=found.rows)
     ranking = replace(ranking, notes=(*ranking.notes, *notes))
-    return Ranked(ranking, asked.missions, unread)
-
-
-class Drifts(NamedTuple):
-    """Which margins drift, and the missions that could not be read."""
-
-    drifts: FleetDrifts
-    unread: tuple[Unread, ...]
+    return Answered(ranking, unread)
 
 
 def drift(
@@ -251,17 +245,10 @@ def drift(
     engine: Engine,
     selection: Selection = EVERY,
     on_progress: Progress | None = None,
-) -> Drifts:
+) -> Answered[FleetDrifts]:
     """Which thresholds creep towards turning, and when they will turn; see ``rank``."""
     asked = ask(fleet, engine, selection, on_progress=on_progress)
-    return Drifts(fleet_drift(asked.rows), asked.digests.unread)
-
-
-class Outliers(NamedTuple):
-    """Which robots differ from their sisters, and the missions that could not be read."""
-
-    outliers: FleetOutliers
-    unread: tuple[Unread, ...]
+    return Answered(fleet_drift(asked.rows), asked.digests.unread)
 
 
 def outliers(
@@ -269,12 +256,12 @@ def outliers(
     engine: Engine,
     selection: Selection = EVERY,
     on_progress: Progress | None = None,
-) -> Outliers:
+) -> Answered[FleetOutliers]:
     """Which robots have settings, or decide, as none of their sisters; see ``rank``."""
     asked = ask(fleet, engine, selection, with_values=True, on_progress=on_progress)
     rows = asked.rows
     settings = Settings.of(rows, asked.digests.values)
-    return Outliers(fleet_outliers(rows, settings), asked.digests.unread)
+    return Answered(fleet_outliers(rows, settings), asked.digests.unread)
 
 
 def learn_good(
@@ -308,13 +295,6 @@ def learn_good(
         if on_progress is not None:
             on_progress(number, len(chosen))
     return learned
-
-
-class Finding(NamedTuple):
-    """The missions and their turns that were asked for, by time; and what could not be read."""
-
-    found: list[tuple[FoundMission, tuple[FoundTurn, ...]]]
-    unread: tuple[Unread, ...]
 
 
 class _Search(NamedTuple):
@@ -353,19 +333,23 @@ def turn_query(
     return TurnQuery(parameter=where, **named)
 
 
+Found = list[tuple[FoundMission, tuple[FoundTurn, ...]]]
+"""Missions with their turns, by time."""
+
+
 def find(
+    query: TurnQuery,
     fleet: Fleet,
     engine: Engine,
-    query: TurnQuery,
     selection: Selection = EVERY,
     on_progress: Progress | None = None,
-) -> Finding:
+) -> Answered[Found]:
     """In which missions, and when, a comparison turned.
 
     Args:
+        query: what is looked for.
         fleet: the data set.
         engine: where the tasks run, one for each mission whose digest fits.
-        query: what is looked for.
         selection: which missions.
         on_progress: called with (done, in all).
 
@@ -381,7 +365,7 @@ def find(
     turns = engine.map(_turns, jobs, on_progress)
     unread = [one for _, why in turns for one in why]
     found = [(one, own) for one, (own, _) in zip(likely, turns, strict=True) if own]
-    return Finding(found, (*asked.digests.unread, *unread))
+    return Answered(found, (*asked.digests.unread, *unread))
 
 
 def _turns(job: _Search) -> tuple[tuple[FoundTurn, ...], tuple[Unread, ...]]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 import shlex
-import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Generic, TypeVar
 
@@ -16,13 +16,19 @@ import yaml
 from rich.console import Console
 
 from pytpc.api import fleet_asking as asking
-from pytpc.api.dask_engine import engine
-from pytpc.api.fleet_missions import Selection, Unread, missions
+from pytpc.api.dask_engine import Engine
+from pytpc.api.fleet_missions import Selection, missions
 from pytpc.base.columns import write_table
 from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import JSON, PATH, as_object
 from pytpc.cli.console import console, print_json, progress, tell_person
-from pytpc.cli.fleet_options import PARQUET, selecting, store_options, tell_unread
+from pytpc.cli.fleet_options import (
+    PARQUET,
+    SelectingArguments,
+    end_with_unread,
+    selecting,
+    store_options,
+)
 from pytpc.fleet.store import Fleet, shown_url
 from pytpc.present.fleet_columns import drifts_table, found_table, outliers_table, ranking_table
 from pytpc.present.fleet_json import drifts_json, found_json, outliers_json, ranking_json
@@ -57,27 +63,13 @@ def answering(command: Command) -> Command:
 
 
 @dataclass(frozen=True)
-class _Asked:
-    fleet: str
-    robots: tuple[str, ...]
-    since: str | None
-    until: str | None
-    build: str | None
+class _Asked(SelectingArguments):
     top: int
     parquet: Path | None
     page: Path | None
-    cluster: str | None
-    workers: int | None
-    patience_s: float
-    as_json: bool
 
-    @property
-    def store(self) -> Fleet:
-        return Fleet(self.fleet, self.patience_s)
 
-    @property
-    def selection(self) -> Selection:
-        return Selection(self.robots, self.since, self.until, build=self.build)
+_Ask = Callable[[Fleet, Engine, Selection, Callable[[int, int], None]], asking.Answered[Answer]]
 
 
 @dataclass(frozen=True)
@@ -89,19 +81,20 @@ class _Shown(Generic[Answer]):
     page: Callable[[Answer, str], str]
     write: Callable[[Console, Answer, int], None]
 
-    def show(self, answer: Answer, given: _Asked, unread: Sequence[Unread]) -> None:
-        """Show it as it is asked for, and end with 1 if something could not be read."""
+    def answer(self, given: _Asked, doing: str, ask: _Ask[Answer]) -> None:
+        """Ask, show the answer as it is asked for, and end with 1 if something was not read."""
+        with given.engine() as own, progress(doing) as advance:
+            found = ask(given.store, own, given.selection(), advance)
         if given.parquet is not None:
-            write_table(self.table(answer), given.parquet)
+            write_table(self.table(found.answer), given.parquet)
         if given.page is not None:
-            write_page(given.page, self.page(answer, shown_url(given.fleet)))
+            write_page(given.page, self.page(found.answer, shown_url(given.fleet)))
             tell_person(f"written: {given.page}")
         if given.as_json:
-            print_json(self.document(answer))
+            print_json(self.document(found.answer))
         elif given.parquet is None and given.page is None:
-            self.write(console(), answer, given.top)
-        if tell_unread(unread):
-            sys.exit(1)
+            self.write(console(), found.answer, given.top)
+        end_with_unread(found.unread)
 
 
 RANKING = _Shown(ranking_json, ranking_table, ranking_page, print_ranking)
@@ -119,9 +112,7 @@ def rank_command(given: _Asked) -> None:
     Bad missions are judged by their marks, beside good ones of their robot and of its sisters;
     values that only bad missions have, and comparisons that behave otherwise in them, count, too.
     """
-    with engine(given.cluster, given.workers) as own, progress("judging missions") as advance:
-        found = asking.rank(given.store, own, given.selection, advance)
-    RANKING.show(found.ranking, given, found.unread)
+    RANKING.answer(given, "judging missions", asking.rank)
 
 
 @click.command("drift")
@@ -129,9 +120,7 @@ def rank_command(given: _Asked) -> None:
 @as_object(_Asked)
 def drift_command(given: _Asked) -> None:
     """Show which margins shrink from day to day, and the day on which each comparison will turn."""
-    with engine(given.cluster, given.workers) as own, progress("reading missions") as advance:
-        found = asking.drift(given.store, own, given.selection, advance)
-    DRIFTS.show(found.drifts, given, found.unread)
+    DRIFTS.answer(given, "reading missions", asking.drift)
 
 
 @click.command("outliers")
@@ -139,9 +128,7 @@ def drift_command(given: _Asked) -> None:
 @as_object(_Asked)
 def outliers_command(given: _Asked) -> None:
     """Show which robots are set, or decide, otherwise than their sisters."""
-    with engine(given.cluster, given.workers) as own, progress("reading missions") as advance:
-        found = asking.outliers(given.store, own, given.selection, advance)
-    OUTLIERS.show(found.outliers, given, found.unread)
+    OUTLIERS.answer(given, "reading missions", asking.outliers)
 
 
 @dataclass(frozen=True)
@@ -202,24 +189,13 @@ def find_command(given: _FindArguments) -> None:
     query = asking.turn_query(
         given.where, within=given.margin, low=given.low, high=given.high, had=given.had
     )
-    with engine(given.cluster, given.workers) as own, progress("looking at missions") as advance:
-        found = asking.find(given.store, own, query, given.selection, advance)
-    FOUND.show(found.found, given, found.unread)
+    FOUND.answer(given, "looking at missions", partial(asking.find, query))
 
 
 @dataclass(frozen=True)
-class _LearnArguments:
-    fleet: str
-    robots: tuple[str, ...]
-    since: str | None
-    until: str | None
-    build: str | None
+class _LearnArguments(SelectingArguments):
     profile: Path
     most: int
-    cluster: str | None
-    workers: int | None
-    patience_s: float
-    as_json: bool
 
 
 @click.command("learn")
@@ -247,10 +223,9 @@ class _LearnArguments:
 @as_object(_LearnArguments)
 def learn_command(given: _LearnArguments) -> None:
     """Put good missions of each robot into a profile, for --reference of other commands."""
-    fleet = Fleet(given.fleet, given.patience_s)
-    selection = Selection(given.robots, given.since, given.until, "good", given.build)
-    with engine(given.cluster, given.workers) as own, progress("learning missions") as advance:
-        known = missions(fleet, own, selection)
+    fleet = given.store
+    with given.engine() as own, progress("learning missions") as advance:
+        known = missions(fleet, own, given.selection("good"))
         learned = asking.learn_good(fleet, known.found, given.profile, given.most, advance)
     if given.as_json:
         print_json([one.folder for one in learned])
@@ -258,8 +233,7 @@ def learn_command(given: _LearnArguments) -> None:
         click.echo(f"learned {many(len(learned), 'good mission')} into {plain(str(given.profile))}")
         where = shlex.quote(plain(str(given.profile)))
         tell_person(f"compare a mission with them: pytpc rank MISSION --reference {where}")
-    if tell_unread(known.unread):
-        sys.exit(1)
+    end_with_unread(known.unread)
 
 
 COMMANDS: list[click.Command] = [

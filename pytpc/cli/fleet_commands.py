@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import re
 import shlex
 import sys
 from collections import Counter, defaultdict
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import click
 
-from pytpc.api.dask_engine import engine
 from pytpc.api.fleet_adding import (
     KEEPS,
     VERDICTS,
@@ -25,9 +23,9 @@ from pytpc.api.fleet_adding import (
     missions_at,
 )
 from pytpc.api.fleet_missions import (
+    EVERY,
     FleetMission,
     Missions,
-    Selection,
     meant,
     missions,
     table_of,
@@ -40,13 +38,18 @@ from pytpc.cli.arguments import JSON, PATH, as_object
 from pytpc.cli.console import console, print_json, progress, tell_next, warn
 from pytpc.cli.console import table_of as text_table
 from pytpc.cli.fleet_answers import COMMANDS as ANSWERS
-from pytpc.cli.fleet_options import PARQUET, day_given, selecting, store_options, tell_unread
+from pytpc.cli.fleet_options import (
+    PARQUET,
+    SelectingArguments,
+    StoreArguments,
+    day_given,
+    end_with_unread,
+    selecting,
+    store_options,
+)
 from pytpc.cli.lines import say
 from pytpc.fleet.store import Fleet, shown_url
 
-Command = TypeVar("Command", bound=Callable[..., object])
-_DAY = re.compile(r"\d{4}-\d\d-\d\d")
-_SAID = 5
 _UNITS = ("B", "kB", "MB", "GB", "TB")
 
 
@@ -60,8 +63,7 @@ def fleet_command() -> None:
 
 
 @dataclass(frozen=True)
-class _AddArguments:
-    fleet: str
+class _AddArguments(StoreArguments):
     paths: tuple[Path, ...]
     robot: str | None
     day: str | None
@@ -69,10 +71,6 @@ class _AddArguments:
     keep: Keep
     verdict: Verdict | None
     again: bool
-    cluster: str | None
-    workers: int | None
-    patience_s: float
-    as_json: bool
 
 
 @fleet_command.command("add")
@@ -114,11 +112,10 @@ def add_command(given: _AddArguments) -> None:
     What is there is passed over, also while somebody else adds it. A mission that cannot be read is
     named and passed over; the exit status is then 1.
     """
-    fleet = Fleet(given.fleet, given.patience_s)
     found = missions_at(given.paths, given.robot)
     options = AddOptions(given.static_source, given.keep, given.verdict, given.day, given.again)
-    with engine(given.cluster, given.workers) as own, progress("adding missions") as advance:
-        made = add(fleet, found, options, own, advance)
+    with given.engine() as own, progress("adding missions") as advance:
+        made = add(given.store, found, options, own, advance)
     for one in made:
         for note in one.notes:
             warn(f"{one.path}: {note}")
@@ -182,18 +179,9 @@ def size_text(size: int) -> str:
 
 
 @dataclass(frozen=True)
-class _ListArguments:
-    fleet: str
-    robots: tuple[str, ...]
-    since: str | None
-    until: str | None
-    build: str | None
+class _ListArguments(SelectingArguments):
     verdict: Verdict | None
     parquet: Path | None
-    cluster: str | None
-    workers: int | None
-    patience_s: float
-    as_json: bool
 
 
 @fleet_command.command("list")
@@ -205,18 +193,15 @@ class _ListArguments:
 @as_object(_ListArguments)
 def list_command(given: _ListArguments) -> None:
     """List the missions."""
-    selection = Selection(given.robots, given.since, given.until, given.verdict, given.build)
-    fleet = Fleet(given.fleet, given.patience_s)
-    with engine(given.cluster, given.workers) as own, progress("reading missions") as advance:
-        found = missions(fleet, own, selection, advance)
+    with given.engine() as own, progress("reading missions") as advance:
+        found = missions(given.store, own, given.selection(given.verdict), advance)
     if given.parquet is not None:
         write_table(table_of(found.found), given.parquet)
     if given.as_json:
         print_json([one.to_json() for one in found.found])
     elif given.parquet is None:
         _show_list(found)
-    if tell_unread(found.unread):
-        sys.exit(1)
+    end_with_unread(found.unread)
 
 
 def _show_list(found: Missions) -> None:
@@ -236,14 +221,9 @@ def _show_list(found: Missions) -> None:
 
 
 @dataclass(frozen=True)
-class _ShowArguments:
-    fleet: str
+class _ShowArguments(StoreArguments):
     mission: str | None
     output: Path | None
-    cluster: str | None
-    workers: int | None
-    patience_s: float
-    as_json: bool
 
 
 @fleet_command.command("show")
@@ -260,8 +240,8 @@ class _ShowArguments:
 @as_object(_ShowArguments)
 def show_command(given: _ShowArguments) -> None:
     """Show how large the data set is, or what is known of one MISSION."""
-    fleet = Fleet(given.fleet, given.patience_s)
-    with engine(given.cluster, given.workers) as own, progress("reading missions") as advance:
+    fleet = given.store
+    with given.engine() as own, progress("reading missions") as advance:
         found = missions(fleet, own, on_progress=advance)
     if given.mission is None:
         if given.output is not None:
@@ -278,8 +258,7 @@ def show_command(given: _ShowArguments) -> None:
             write_folder(fleet, place, given.output)
             tell_next(f"pytpc rank {shlex.quote(plain(str(given.output)))}")
         return
-    if tell_unread(found.unread):
-        sys.exit(1)
+    end_with_unread(found.unread)
 
 
 def _show_fleet(fleet: Fleet, found: Missions, *, as_json: bool) -> None:
@@ -329,19 +308,10 @@ def _show_mission(one: FleetMission, *, as_json: bool) -> None:
 
 
 @dataclass(frozen=True)
-class _DropArguments:
-    fleet: str
+class _DropArguments(SelectingArguments):
     names: tuple[str, ...]
-    robots: tuple[str, ...]
-    since: str | None
-    until: str | None
-    build: str | None
     half: bool
     yes: bool
-    cluster: str | None
-    workers: int | None
-    patience_s: float
-    as_json: bool
 
 
 @fleet_command.command("drop")
@@ -354,12 +324,11 @@ class _DropArguments:
 @as_object(_DropArguments)
 def drop_command(given: _DropArguments) -> None:
     """Remove missions from the data set: each MISSION, or those of robots, days or a build."""
-    fleet = Fleet(given.fleet, given.patience_s)
+    fleet, selection = given.store, given.selection()
     fleet.check()
-    selection = Selection(given.robots, given.since, given.until, build=given.build)
     places = {meant(fleet, name) for name in given.names}
-    if selection != Selection():
-        with engine(given.cluster, given.workers) as own:
+    if selection != EVERY:
+        with given.engine() as own:
             found = missions(fleet, own, selection)
         places |= {one.place for one in found.found}
     if given.half:

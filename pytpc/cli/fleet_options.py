@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
 from datetime import date
 from typing import TypeVar
 
 import click
 
-from pytpc.api.fleet_missions import Unread
+from pytpc.api.dask_engine import Engine, engine
+from pytpc.api.fleet_missions import Selection, Unread
 from pytpc.cli.arguments import PATH
 from pytpc.cli.console import warn
-from pytpc.fleet.store import PATIENCE_S
+from pytpc.fleet.store import PATIENCE_S, Fleet
 
 Command = TypeVar("Command", bound=Callable[..., object])
 _DAY = re.compile(r"\d{4}-\d\d-\d\d")
@@ -61,6 +65,40 @@ PATIENCE = click.option(
 )
 
 
+@dataclass(frozen=True)
+class StoreArguments:
+    """What ``store_options`` give, and ``--json``."""
+
+    fleet: str
+    cluster: str | None
+    workers: int | None
+    patience_s: float
+    as_json: bool
+
+    @property
+    def store(self) -> Fleet:
+        """The data set."""
+        return Fleet(self.fleet, self.patience_s)
+
+    def engine(self) -> AbstractContextManager[Engine]:
+        """Where the work is done."""
+        return engine(self.cluster, self.workers)
+
+
+@dataclass(frozen=True)
+class SelectingArguments(StoreArguments):
+    """The same with what ``selecting`` gives."""
+
+    robots: tuple[str, ...]
+    since: str | None
+    until: str | None
+    build: str | None
+
+    def selection(self, verdict: str | None = None) -> Selection:
+        """Which missions are meant; with a verdict, only those that went so."""
+        return Selection(self.robots, self.since, self.until, verdict, self.build)
+
+
 def store_options(command: Command) -> Command:
     """The data set, and where the work on it is done."""
     for option in (PATIENCE, WORKERS, CLUSTER, FLEET):
@@ -75,10 +113,11 @@ def selecting(command: Command) -> Command:
     return command
 
 
-def tell_unread(unread: Sequence[Unread]) -> int:
-    """Name the missions that cannot be read; the exit status."""
+def end_with_unread(unread: Sequence[Unread]) -> None:
+    """Name the missions that cannot be read, and end with 1 if there are some."""
     for one in unread[:_SAID]:
         warn(f"{'/'.join(one.place)} is left out: {one.why}")
     if len(unread) > _SAID:
         warn(f"{len(unread) - _SAID:,} more missions are left out")
-    return 1 if unread else 0
+    if unread:
+        sys.exit(1)

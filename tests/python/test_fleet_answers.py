@@ -172,7 +172,7 @@ def test_missions_that_do_not_count_are_said(tmp_path: Path):
         with pytest.raises(InputError, match="1 mission without a comparison, not counted"):
             rank(fleet, own)
         stored(fleet, 2, "bad")
-        found = rank(fleet, own).ranking
+        found = rank(fleet, own).answer
     assert (found.bad, found.good) == (1, 1)
     assert found.notes == (
         "1 mission without a comparison, not counted (1 bad)",

@@ -98,7 +98,7 @@ class FleetRanker:
             found = rank(Fleet(folder), self.engine)
         if found.unread:
             raise TpcError(found.unread[0].why, Path(whole.url))
-        return verdicts_of(found.ranking)
+        return verdicts_of(found.answer)
 
 
 def link_missions(whole: Path, places: Sequence[Place], part: Path) -> None:
