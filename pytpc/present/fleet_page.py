@@ -50,7 +50,6 @@ _LONGEST_CELL = 9
 _LONGEST_HEADING = 32
 _ROBOTS_SHOWN = 12
 _MATRIX = (40, 30)
-_SCRIPTS = ("theme.js", "fleet.js")
 Texts = TypeVar("Texts", bound="tuple[str, ...]")
 
 
@@ -371,7 +370,7 @@ def _cut(texts: Texts) -> Texts:
 
 
 def _page(template: str, title: str, **known: Any) -> str:  # noqa: ANN401 - each template has its own
-    scripts = [page_script(name) for name in _SCRIPTS]
+    scripts = [page_script("theme.js"), page_script("cards.js") + page_script("fleet.js")]
     return (
         environment()
         .get_template(template)

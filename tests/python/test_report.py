@@ -364,7 +364,7 @@ def test_the_package_brings_its_templates():
     folder = Path(__file__).parents[2] / "pytpc" / "present" / "page" / "templates"
     assert {p.name for p in folder.iterdir()} == {
         *("report.html.j2", "report.css"),
-        *("theme.js", "report.js", "report-figures.js", "report-timeline.js"),
+        *("theme.js", "cards.js", "report.js", "report-figures.js", "report-timeline.js"),
         *("tpcs.html.j2", "tpcs.css", "tpcs.js"),
         *("fleet.html.j2", "fleet.css", "fleet.js"),
         *("fleet-ranking.html.j2", "fleet-drifts.html.j2"),

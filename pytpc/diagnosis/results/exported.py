@@ -144,3 +144,19 @@ class MissionExport:
     count: int
     unknown: int
     rows: Callable[[int], Iterator[ExportedRows]]
+
+    def counting(self, on_progress: Progress | None) -> Callable[[int], None]:
+        """Take how many evaluations and ranks were written more; tell how many there are by now.
+
+        Args:
+            on_progress: called with (written, all of both).
+        """
+        done = 0
+
+        def tell(count: int) -> None:
+            nonlocal done
+            done += count
+            if on_progress is not None:
+                on_progress(done, self.count + self.ranks.combined.size)
+
+        return tell

@@ -79,7 +79,7 @@ def write_catalogue(path: Path, static: StaticInfo, found: Sequence[Details], ti
 
 def render(static: StaticInfo, found: Sequence[Details], title: str) -> str:
     """The page as text, with everything from the sources escaped."""
-    script = page_script("tpcs.js")
+    script = page_script("cards.js") + page_script("tpcs.js")
     packages = _packages(found)
     return (
         environment()

@@ -99,14 +99,7 @@ def write_tables(
     Raises:
         TpcError: a file cannot be written.
     """
-    done = 0
-
-    def tell(count: int) -> None:
-        nonlocal done
-        done += count
-        if on_progress is not None:
-            on_progress(done, found.count + found.ranks.combined.size)
-
+    tell = found.counting(on_progress)
     large = {_EVALUATIONS: _write_evaluations, _RANKS: _write_ranks}
     for name, columns in _SCHEMAS.items():
         schema = pa.schema(columns)

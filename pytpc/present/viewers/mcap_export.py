@@ -55,14 +55,7 @@ def write_mcap(found: MissionExport, path: Path, on_progress: Progress | None = 
         writer = Writer(stream)
         writer.start(profile="ros2", library="pytpc")
         channels = _channels(writer, found)
-        done = 0
-
-        def tell(count: int) -> None:
-            nonlocal done
-            done += count
-            if on_progress is not None:
-                on_progress(done, found.count + found.ranks.combined.size)
-
+        tell = found.counting(on_progress)
         streams = (
             _evaluations(found, tell),
             _ranks(found, tell),

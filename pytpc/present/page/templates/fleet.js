@@ -1,13 +1,2 @@
-(() => {
-  "use strict";
-  tpcTheme(() => {});
-  const cards = [...document.querySelectorAll("details.card")];
-  // A link to a card opens it, and nobody prints what is folded away.
-  const reveal = () => {
-    const card = location.hash && document.getElementById(location.hash.slice(1));
-    if (card && card.tagName === "DETAILS") card.open = true;
-  };
-  window.addEventListener("hashchange", reveal);
-  window.addEventListener("beforeprint", () => { for (const card of cards) card.open = true; });
-  reveal();
-})();
+tpcTheme(() => {});
+tpcCards([...document.querySelectorAll("details.card")]);

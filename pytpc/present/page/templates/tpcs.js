@@ -26,13 +26,6 @@
       for (const card of cards) if (!card.hidden) card.open = open;
     });
   }
-  // A link to a comparison opens it, and nobody prints what is folded away.
-  const reveal = () => {
-    const card = location.hash && document.getElementById(location.hash.slice(1));
-    if (card && card.tagName === "DETAILS") card.open = true;
-  };
-  window.addEventListener("hashchange", reveal);
-  window.addEventListener("beforeprint", () => { for (const card of cards) card.open = true; });
-  reveal();
+  tpcCards(cards);
   apply();
 })();
