@@ -11,20 +11,19 @@ from __future__ import annotations
 import contextlib
 import io
 import json
-import os
 import re
-import secrets
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any, BinaryIO, NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 from urllib.parse import quote, unquote
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from pytpc.base.atomic import stage_beside
 from pytpc.base.errors import InputError, TpcError
 from pytpc.base.wording import plain
 from pytpc.fleet.tables import COMMIT, SCHEMA, SCHEMAS, TABLES, Table
@@ -271,10 +270,13 @@ class Fleet:
     def _is_local(self) -> bool:
         return "file" in _protocols(self._fs)
 
+    @property
+    def _is_web(self) -> bool:
+        return not _protocols(self._fs).isdisjoint({"http", "https"})
+
     def _at_store(self, name: str) -> str:
         """The path of a file or table; in that of a web server the escapes are escaped again."""
-        is_web = not _protocols(self._fs).isdisjoint({"http", "https"})
-        return f"{self._root}/{quote(name, safe='/=') if is_web else name}"
+        return f"{self._root}/{quote(name, safe='/=') if self._is_web else name}"
 
     def _strangers(self) -> list[str]:
         """What is there that is not of a data set that somebody begins."""
@@ -357,12 +359,8 @@ class Fleet:
             self._fs.pipe_file(path, content)
             return
         target = Path(path)
-        staged = target.with_name(f".{target.name}.{secrets.token_hex(4)}")
+        staged = _staged(target, content)
         try:
-            with _staged(staged) as stream:
-                stream.write(content)
-                stream.flush()
-                os.fsync(stream.fileno())
             staged.replace(target)
         finally:
             staged.unlink(missing_ok=True)
@@ -387,7 +385,7 @@ class Fleet:
             paths = self._asked(find)
         except FileNotFoundError:
             return []
-        if not _protocols(self._fs).isdisjoint({"http", "https"}):
+        if self._is_web:
             paths = [unquote(path) for path in paths]
         return sorted(self._parsed(paths))
 
@@ -411,12 +409,12 @@ def _protocols(fs: Any) -> set[str]:  # noqa: ANN401 - fsspec has no types
     return {fs.protocol} if isinstance(fs.protocol, str) else set(fs.protocol)
 
 
-def _staged(path: Path) -> BinaryIO:
-    """A new file in a folder that is made, and that somebody may remove while it is empty."""
+def _staged(target: Path, content: bytes) -> Path:
+    """A new file beside one, in a folder that somebody may remove while it is empty."""
     for left in reversed(range(_TRIES)):
         try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            return path.open("xb")
+            target.parent.mkdir(parents=True, exist_ok=True)
+            return stage_beside(target, content, mode=0o666)
         except FileNotFoundError:
             if not left:
                 raise
