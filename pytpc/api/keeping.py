@@ -250,7 +250,7 @@ class Listening(threading.Thread):
 
     ``marks`` counts what was heard, and ``latched`` has the last time of each publisher that tells
     it to whoever listens next: that one knows it by then. ``fault`` says why there is no graph, and
-    is empty if there is one; ``has_begun`` says that it was found.
+    is empty if there is one; ``has_begun`` says that its nodes were found.
     """
 
     def __init__(
@@ -293,8 +293,8 @@ class Listening(threading.Thread):
         except (TpcError, OSError) as error:
             self.fault = str(error)
 
-    def _see(self, _progress: Progress) -> None:
-        self.has_begun = True
+    def _see(self, progress: Progress) -> None:
+        self.has_begun |= progress.is_found
 
     def _hear(self, source: Source, time_ns: int) -> None:
         if source.latched:
@@ -335,7 +335,7 @@ class _Part:
 
 
 def _wait_until_it_hears(listening: Listening, stop: threading.Event | Stop | None) -> None:
-    """Wait until it is connected to the nodes; joining a graph may take longer than that."""
+    """Wait until it is connected to the nodes; finding them may take longer than that."""
     until = float("inf")
     while time.monotonic() < until and listening.is_alive() and not (stop and stop.is_set()):
         if listening.has_begun:

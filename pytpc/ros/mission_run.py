@@ -83,7 +83,8 @@ class RecorderStatus:
 class Progress:
     """How far a mission is: seconds of the graph's clock and of the wall, reports and marks.
 
-    ``in_files`` is what the nodes wrote to files, ``has_time`` whether the graph has a clock yet.
+    ``in_files`` is what the nodes wrote to files, ``has_time`` whether the graph has a clock yet,
+    and ``is_found`` whether its nodes are known; of ROS 2 they are discovered, which takes seconds.
     """
 
     sim_s: float
@@ -92,6 +93,7 @@ class Progress:
     marks: int
     in_files: FileCounts = NO_FILES
     has_time: bool = True
+    is_found: bool = True
 
     @classmethod
     def of(cls, status: RecorderStatus, wall_s: float, in_files: FileCounts = NO_FILES) -> Progress:

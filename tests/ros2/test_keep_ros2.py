@@ -92,7 +92,13 @@ def test_after_a_mark(
     words = ("keep", "--on-marks", "--after", "2", "-o", "kept", "--folder", reports)
     with contextlib.ExitStack() as stack:
         keeping = stack.enter_context(running(pytpc(*words), env, tmp_path))
-        wait_for(lambda: list(tmp_path.glob("kept/.keep-*/mission.mcap.active")))
+        heard = b"limits.speed"
+        wait_for(
+            lambda: any(
+                heard in path.read_bytes()
+                for path in tmp_path.glob("kept/.keep-*/mission.mcap.active")
+            )
+        )
         subprocess.run([PYTHON, "-c", MARK], env=ros2_env(domain), check=True, timeout=PATIENCE_S)
         node.send_signal(signal.SIGKILL)
         wait_for(lambda: list(tmp_path.glob("kept/keep-*")))

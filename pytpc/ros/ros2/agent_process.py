@@ -161,11 +161,13 @@ class Agent:
         If it is not ``enough`` by then, it waits until `Discovery` says that nobody else is there.
         """
         self._ended.wait(max(0.0, self._discovery.began_s + _FOUND_S - time.monotonic()))
-        while not enough(self.graph) and not self._ended.is_set():
-            if time.monotonic() >= self._discovery.until_s:
-                break
+        while not self.has_found(enough) and not self._ended.is_set():
             self._ended.wait(0.1)
         return self.graph
+
+    def has_found(self, enough: Callable[[Graph], bool]) -> bool:
+        """Whether the graph is ``enough``, or by `Discovery` nobody else is there."""
+        return enough(self.graph) or time.monotonic() >= self._discovery.until_s
 
     def values(self, node: str) -> bytes:
         """All parameters of a node, as a serialized rcl_interfaces/ParameterEvent.

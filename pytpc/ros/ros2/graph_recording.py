@@ -41,7 +41,7 @@ from pytpc.ros.mission_run import (
 from pytpc.ros.ros2.address import Ros2Address
 from pytpc.ros.ros2.agent_process import Agent, Graph
 from pytpc.ros.ros2.command_lines import CommandLines
-from pytpc.ros.ros2.found_nodes import nobody, visible
+from pytpc.ros.ros2.found_nodes import is_somebody, nobody, visible
 from pytpc.ros.ros2.interpreter import launch_interpreter
 from pytpc.ros.ros2.mcap_file import McapFile
 from pytpc.ros.ros2.node_values import NodeValues
@@ -228,7 +228,8 @@ class GraphRecording:
             seen = look()
             if on_progress is not None and time.monotonic() - told > _TOLD_S:
                 told = time.monotonic()
-                on_progress(Progress.of(status, wall_s, seen.files))
+                progress = Progress.of(status, wall_s, seen.files)
+                on_progress(replace(progress, is_found=self._agent.has_found(is_somebody)))
             in_files = seen.files.reports + seen.files.summaries
             if wall_s > _QUIET_S and not status.is_reporting and not in_files:
                 self._tell_quiet()
