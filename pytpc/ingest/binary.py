@@ -96,7 +96,8 @@ class _TpcReader:
     def blocks(self) -> Iterator[RecordBlock]:
         """All reports in the order of the steady clock; everything else is read first.
 
-        The memory of a block is used again for a later one.
+        Those that are condensed come thread by thread, where that makes no difference. The memory
+        of a block is used again for a later one.
         """
         threads = self._file.find(self._skip)
         self._read_system()
@@ -104,7 +105,12 @@ class _TpcReader:
         self._key_of_site = self._system.key_codes(self._gathering)
         if threads and not self._gathering.has_room(self._file.count * layout.RECORDS_OF_CHUNK):
             self._condenser = self._made_condenser(threads)
-        yield from self._merged(threads)
+        if self._gathering.period_ns is not None and self._file.are_apart(
+            threads, self._key_of_site
+        ):
+            yield from self._in_turn(threads)
+        else:
+            yield from self._merged(threads)
 
     def _read_system(self) -> None:
         system = self._system
@@ -121,9 +127,16 @@ class _TpcReader:
 
     # --- reports
 
+    def _in_turn(self, threads: list[ThreadChunks]) -> Iterator[RecordBlock]:
+        """All reports of the first thread, then those of the next one."""
+        for thread in sorted(threads, key=_begin):
+            while self._next_block(thread):
+                assert thread.block is not None
+                yield thread.block
+
     def _merged(self, threads: list[ThreadChunks]) -> Iterator[RecordBlock]:
         """All reports in the order of the steady clock; equal times by thread."""
-        waiting = sorted(threads, key=lambda thread: (thread.first_steady, thread.number))
+        waiting = sorted(threads, key=_begin)
         active: list[ThreadChunks] = []
         while waiting or active:
             if not active or (
@@ -159,7 +172,9 @@ class _TpcReader:
         """Read on in a thread until there are reports; False at the end."""
         thread.block = None
         while thread.read < len(thread.chunks):
-            places = thread.chunks[thread.read : thread.read + GROUP]
+            # The last chunk mostly is not full, which makes a group slow.
+            end = max(thread.read + 1, min(thread.read + GROUP, len(thread.chunks) - 1))
+            places = thread.chunks[thread.read : end]
             loaded = self._file.load(places)
             records = loaded[:, layout.CHUNK_HEADER_BYTES :].view(RECORD)
             first = thread.firsts[thread.read]
@@ -369,6 +384,10 @@ class _TpcReader:
         if self._on_progress is not None:
             total = self._file.count * layout.CHUNK_BYTES
             self._on_progress(min(self._done * layout.CHUNK_BYTES, total), total)
+
+
+def _begin(thread: ThreadChunks) -> tuple[int, int]:
+    return thread.first_steady, thread.number
 
 
 def _last(thread: ThreadChunks) -> int:

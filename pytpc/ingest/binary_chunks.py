@@ -29,6 +29,8 @@ Skip = Callable[[str], None]
 # The most chunks that are read at once.
 GROUP = 16
 _SAMPLES = 128
+# A file of so many bytes is in the system's cache when it is read the second time.
+_READ_TWICE = 1 << 30
 # Kind, thread and first record of a chunk, and the time of that record.
 _HEAD = struct.Struct("<IIQ48x8xq")
 _HEADS = np.dtype(
@@ -293,6 +295,31 @@ class ChunkFile:
             records = chunk[layout.CHUNK_HEADER_BYTES :].view(RECORD)
             found.append(records["site"][(records["what"] & 0xFF) == layout.REPORT])
         return np.concatenate(found), len(places) / max(1, some)
+
+    def are_apart(self, threads: list[ThreadChunks], key_of_site: Int32s) -> bool:
+        """Whether no key has reports of two threads; False for a file that is too large to tell.
+
+        Args:
+            threads: all of them.
+            key_of_site: int32[m]; the last entry stands for all sites beyond.
+        """
+        if len(threads) < 2:
+            return True
+        if self.count * layout.CHUNK_BYTES > _READ_TWICE:
+            return False
+        seen = np.zeros(int(key_of_site.max(initial=0)) + 1, np.bool_)
+        for thread in threads:
+            own = np.zeros_like(seen)
+            for at in range(0, len(thread.chunks), GROUP):
+                loaded = self.load(thread.chunks[at : at + GROUP])
+                records = loaded[:, layout.CHUNK_HEADER_BYTES :].view(RECORD)
+                # Other records than reports count, too; most have no site.
+                keys = key_of_site.take(records["site"].reshape(-1), mode="clip")
+                own[keys[keys >= 0]] = True
+            if bool((seen & own).any()):
+                return False
+            seen |= own
+        return True
 
     def load(self, places: list[int]) -> Bytes:
         """uint8[n, 65536]: some chunks; what the file does not have of them is zero."""

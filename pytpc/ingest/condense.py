@@ -45,7 +45,9 @@ class Extent(NamedTuple):
 
 
 class Condenser:
-    """Takes the reports of one process, in order, and hands in what is kept of them.
+    """Takes the reports of one process, and hands in what is kept of them.
+
+    They come in the order of time, or those of each key do where all of them are condensed.
 
     Args:
         gathering: takes in events and summaries. Its marks must be known.
@@ -62,6 +64,7 @@ class Condenser:
         self._channel = channel
         self._node = node
         self._hot = hot
+        self._is_all = bool(hot.all())
         comparisons = max(1, int(np.count_nonzero(hot)))
         shortest = round(extent.seconds * 1e9 * comparisons / _MOST_SUMMARIES)
         self._period_ns = extent.period_ns or max(_PERIOD_NS, shortest)
@@ -83,11 +86,15 @@ class Condenser:
         """Take in reports, at least one."""
         first, last = int(block.time_ns.min()), int(block.time_ns.max())
         self._span = min(self._span[0], first), max(self._span[1], last)
-        hot = self._hot[block.key]
-        kept = ~hot
-        rows = np.flatnonzero(hot)
-        if rows.size:
-            kept[rows[self._condense(block, rows)]] = True
+        if self._is_all:
+            kept = self._condense(block)
+        else:
+            hot = self._hot[block.key]
+            rows = np.flatnonzero(~hot)
+            if rows.size < hot.size:
+                held = np.flatnonzero(hot)
+                rows = np.sort(np.append(rows, held[self._condense(_part(block, held))]))
+            kept = rows
         self._gathering.add_events(self._channel, self._node, _part(block, kept))
         if self._held_rows >= _HELD:
             self._join()
@@ -126,13 +133,12 @@ class Condenser:
         )
         return note
 
-    def _condense(self, block: ReportColumns, rows: Int64s) -> Int64s:
-        """Which of ``rows`` are kept as events; the others are only in a summary."""
-        key = block.key[rows]
-        order = order_of(key)
-        rows, key = rows[order], key[order]
-        time_ns, result = block.time_ns[rows], block.result[rows]
-        bounds, period = self._periods(time_ns, order)
+    def _condense(self, block: ReportColumns) -> Int64s:
+        """Which of the reports are kept as events; the others are only in a summary."""
+        order = order_of(block.key)
+        key, time_ns, result = block.key[order], block.time_ns[order], block.result[order]
+        bounds, in_turn = self._periods(block.time_ns)
+        period = in_turn[order]
         new_key = np.concatenate([[True], key[1:] != key[:-1]])
         starts = np.flatnonzero(new_key | np.concatenate([[True], period[1:] != period[:-1]]))
         heads = np.flatnonzero(new_key)
@@ -144,7 +150,7 @@ class Condenser:
         flop = (before != result) & (before >= 0)
         flops = np.add.reduceat(flop, starts, dtype=np.int64)
         kept = self._some(flop, flops, starts) | (before < 0)
-        partial = _summaries(block, rows, starts)
+        partial = _summaries(block, order, starts)
         partial["key"], partial["node"] = key[starts], self._node
         partial["channel"] = self._channel.code
         partial["flops"] = flops
@@ -152,12 +158,12 @@ class Condenser:
         partial["end_ns"] = np.maximum.reduceat(time_ns, starts)
         self._held.append((partial, bounds[period[starts]]))
         self._held_rows += starts.size
-        self._condensed += rows.size
+        self._condensed += key.size
         found: Int64s = np.sort(order[kept])
         return found
 
-    def _periods(self, time_ns: Int64s, order: Int64s) -> tuple[Int64s, Int64s]:
-        """The beginnings of periods, and for each of the sorted rows the number of its period."""
+    def _periods(self, time_ns: Int64s) -> tuple[Int64s, Int64s]:
+        """The beginnings of periods, and for each report the number of its period."""
         first, last = int(time_ns.min()), int(time_ns.max())
         step = self._period_ns
         if (last - first) // step < time_ns.size:
@@ -170,10 +176,9 @@ class Condenser:
         bounds = np.union1d(grid, within)
         if bounds.size == 1:
             return bounds, np.zeros(time_ns.size, np.int64)
-        in_turn = np.empty_like(time_ns)
-        in_turn[order] = np.searchsorted(bounds, time_ns, "right") - 1
         # If the clock was set back, a report stays in the period of the one before it.
-        return bounds, np.maximum.accumulate(in_turn)[order]
+        begins = np.searchsorted(np.maximum.accumulate(time_ns), bounds, "left")
+        return bounds, np.repeat(np.arange(bounds.size), np.diff(begins, append=time_ns.size))
 
     def _some(self, flop: Bools, flops: Int64s, starts: Int64s) -> Bools:
         """The flops that are kept: of very many in one period the last ones.

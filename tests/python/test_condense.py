@@ -13,9 +13,10 @@ from tpc_file import FULL, TpcFile, header, report, simulated, site, sync
 from pytpc.diagnosis.scores.scores import type1
 from pytpc.diagnosis.scores.summary_scores import LogTables, type2_of_summaries
 from pytpc.ingest import condense
+from pytpc.ingest.condense import condensed
 from pytpc.ingest.gathering import Gathering
 from pytpc.ingest.merged import Merged
-from pytpc.ingest.reading import gather
+from pytpc.ingest.reading import gather, read
 from pytpc.recording.marks import Mark, marks_beside, write_marks
 from pytpc.recording.mission import Recording
 
@@ -193,3 +194,30 @@ def test_the_periods_of_a_process_that_was_killed(
     file.thread(1)
     rows = read_with_room(file.write(tmp_path / "a.tpc"), 1).summaries
     assert rows.count.tolist() == [2, 2]
+
+
+@pytest.mark.parametrize("sites", [(1, 2), (1, 1)])
+def test_threads_with_and_without_a_key_in_common(sites: tuple[int, int], tmp_path: Path) -> None:
+    """Condensed while it is read, as in memory; in two threads the same key is one by time."""
+    drawn = random.Random(7)
+    threads = []
+    for number in sites:
+        times = sorted(drawn.sample(range(40 * SECOND), 5000))
+        values = [drawn.choice([0.0, 1.0, 2.0, math.nan]) for _ in times]
+        each = zip(times, values, strict=True)
+        threads.append([report(number, at, cmp, 1.0, result=int(cmp > 1.0)) for at, cmp in each])
+    path = write(tmp_path / "a.tpc", threads[0], [17 * SECOND], threads[1])
+    found = read(path, period_ns=3 * SECOND)
+    wanted = condensed(read_with_room(path, None), 3 * SECOND)
+    assert found.events.keys == (HOT, RARE)[: len(set(sites))]
+    for table in ("events", "summaries"):
+        one, other = getattr(found, table), getattr(wanted, table)
+        order = np.lexsort((getattr(one, one.order), one.key))
+        same = np.lexsort((getattr(other, other.order), other.key))
+        assert [one.keys[key] for key in one.key[order]] == [
+            other.keys[key] for key in other.key[same]
+        ]
+        for name in one.columns().keys() - {"key", "node"}:
+            np.testing.assert_allclose(
+                getattr(one, name)[order], getattr(other, name)[same], rtol=1e-12, err_msg=name
+            )
