@@ -27,6 +27,8 @@ Progress = Callable[[int, int], None]
 LOCAL = "local"
 MEMORY = "2GB"
 """What a worker may have: near it, its tasks wait; beyond it, it is started again."""
+DIED = f"worker processes died while they read it; it may not fit into their memory ({MEMORY})"
+"""What to say of something at which they died."""
 _JOINED = 8
 """So many results are joined at once."""
 _ANSWERS_S = 20
@@ -45,6 +47,7 @@ class Engine:
         task: Callable[[Item], Result],
         items: Sequence[Item],
         on_progress: Progress | None = None,
+        lost: Callable[[Item], Result] | None = None,
     ) -> list[Result]:
         """Do a task for each item; the results are in their order.
 
@@ -52,12 +55,19 @@ class Engine:
             task: a function at the top of a module.
             items: what it is given.
             on_progress: called with (done, in all).
+            lost: makes the result of an item at which worker processes die again and again, as one
+                that does not fit into their memory; None: that is an error.
 
         Raises:
             TpcError: a task could not be done, or the cluster is gone.
         """
-        found: list[Result] = self._made(task, items, None, on_progress)
-        return found
+        if not items:
+            return []
+        if self.client is None:
+            found: list[Result] = self._in_threads(task, items, None, on_progress)
+            return found
+        with _explained():
+            return self._mapped(task, items, on_progress, lost)
 
     def joined(
         self,
@@ -77,28 +87,28 @@ class Engine:
         Raises:
             TpcError: as ``map``.
         """
-        found: Result = self._made(task, items, join, on_progress)
-        return found
-
-    def _made(
-        self,
-        task: Callable[[Any], Any],
-        items: Sequence[Any],
-        join: Callable[[list[Any]], Any] | None,
-        on_progress: Progress | None,
-    ) -> Any:  # noqa: ANN401 - a list of results, or one
         if not items:
-            return [] if join is None else join([])
-        do = self._in_threads if self.client is None else self._on_cluster
-        return do(task, items, join, on_progress or (lambda *_: None))
+            return join([])
+        if self.client is None:
+            found: Result = self._in_threads(task, items, join, on_progress)
+            return found
+        client = self.client
+        with _explained():
+            leaves = self._submitted(task, items, on_progress)
+            whole = _tree(leaves, lambda group: client.submit(join, group, pure=False))
+            # What is joined need not be kept.
+            del leaves
+            self._wait_for(whole)
+            made: list[Result] = client.gather(whole)
+            return made[0]
 
     def _in_threads(
         self,
         task: Callable[[Any], Any],
         items: Sequence[Any],
         join: Callable[[list[Any]], Any] | None,
-        told: Progress,
-    ) -> Any:  # noqa: ANN401
+        on_progress: Progress | None,
+    ) -> Any:  # noqa: ANN401 - a list of results, or one
         from dask import delayed  # noqa: PLC0415 - it takes a second
         from dask.callbacks import Callback  # noqa: PLC0415 - it takes a second
 
@@ -110,7 +120,8 @@ class Engine:
             nonlocal done
             if key in names:
                 done += 1
-                told(done, len(names))
+                if on_progress is not None:
+                    on_progress(done, len(names))
 
         level = [] if join is None else _tree(leaves, delayed(join, pure=False))
         whole = level[0] if level else delayed(list, pure=False)(leaves)
@@ -119,37 +130,81 @@ class Engine:
                 scheduler="threads", num_workers=self.workers, optimize_graph=False
             )
 
-    def _on_cluster(
+    def _mapped(
         self,
-        task: Callable[[Any], Any],
-        items: Sequence[Any],
-        join: Callable[[list[Any]], Any] | None,
-        told: Progress,
-    ) -> Any:  # noqa: ANN401
-        from concurrent.futures import CancelledError  # noqa: PLC0415
+        task: Callable[[Item], Result],
+        items: Sequence[Item],
+        on_progress: Progress | None,
+        lost: Callable[[Item], Result] | None,
+    ) -> list[Result]:
+        """``map`` on a cluster."""
+        leaves = self._submitted(task, items, on_progress)
+        self._wait_for(leaves)
+        killed = [n for n, leaf in enumerate(leaves) if lost is not None and _is_killed(leaf)]
+        found = dict(enumerate(leaves))
+        for number in killed:
+            del found[number]
+        # The results are fetched before another worker dies with them.
+        made: dict[int, Result] = dict(
+            zip(found, self.client.gather([*found.values()]), strict=True)
+        )
+        del leaves, found
+        for number in killed:
+            assert lost is not None
+            # Alone: it may have waited on workers that died at another one.
+            again = self._submitted(task, [items[number]], None)
+            self._wait_for(again)
+            item = items[number]
+            made[number] = lost(item) if _is_killed(again[0]) else self.client.gather(again)[0]
+        return [made[number] for number in range(len(items))]
 
+    def _submitted(
+        self, task: Callable[[Any], Any], items: Sequence[Any], on_progress: Progress | None
+    ) -> list[Any]:
+        total, done = len(items), itertools.count(1)
+        leaves: list[Any] = self.client.map(task, items, pure=False)
+        if on_progress is not None:
+            for leaf in leaves:
+                leaf.add_done_callback(lambda _: on_progress(next(done), total))
+        return leaves
+
+    def _wait_for(self, wanted: Sequence[Any]) -> None:
+        """Wait in turns, between which a signal is heard."""
         from distributed import wait  # noqa: PLC0415 - it takes a second
-        from distributed.scheduler import KilledWorker  # noqa: PLC0415 - it takes a second
 
-        client, total, done = self.client, len(items), itertools.count(1)
-        leaves = client.map(task, items, pure=False)
-        for leaf in leaves:
-            leaf.add_done_callback(lambda _: told(next(done), total))
-        wanted = leaves
-        if join is not None:
-            wanted = _tree(leaves, lambda group: client.submit(join, group, pure=False))
-        # What is joined need not be kept.
-        del leaves
-        try:
-            while not all(one.done() for one in wanted):
-                with suppress(TimeoutError, asyncio.TimeoutError):
-                    wait(wanted, timeout=1)
-            found = client.gather(wanted)
-        except KilledWorker as error:
-            raise TpcError(f"workers died again and again: {error}") from error
-        except (CancelledError, OSError) as error:
-            raise TpcError(f"the cluster is gone: {error}") from error
-        return found if join is None else found[0]
+        cluster = self.client.cluster
+        while not all(one.done() for one in wanted):
+            with suppress(TimeoutError, asyncio.TimeoutError):
+                wait(wanted, timeout=1)
+            # Dask gives up a worker process that dies while it starts.
+            if cluster is not None and len(cluster.workers) < self.workers:
+                cluster.scale(self.workers)
+
+
+def _is_killed(leaf: Any) -> bool:  # noqa: ANN401 - a Future of Dask
+    """Whether workers died at it again and again."""
+    from distributed.scheduler import KilledWorker  # noqa: PLC0415 - it takes a second
+
+    return leaf.status == "error" and isinstance(leaf.exception(), KilledWorker)
+
+
+@contextmanager
+def _explained() -> Iterator[None]:
+    """What may happen to a cluster as an error of ours.
+
+    Raises:
+        TpcError: as `Engine.map`.
+    """
+    from concurrent.futures import CancelledError  # noqa: PLC0415
+
+    from distributed.scheduler import KilledWorker  # noqa: PLC0415 - it takes a second
+
+    try:
+        yield
+    except KilledWorker as error:
+        raise TpcError(f"workers died again and again: {error}") from error
+    except (CancelledError, OSError) as error:
+        raise TpcError(f"the cluster is gone: {error}") from error
 
 
 def _tree(leaves: list[Any], join: Callable[[list[Any]], Any]) -> list[Any]:

@@ -16,7 +16,7 @@ from typing import Literal, NamedTuple, get_args
 import pyarrow as pa
 
 from pytpc.api.comparing import RecordedRun
-from pytpc.api.dask_engine import Engine
+from pytpc.api.dask_engine import DIED, Engine
 from pytpc.api.fleet_digests import comparisons_of, files_of, marks_of, mission_id, values_of
 from pytpc.api.fleet_missions import FleetMission, missions_in
 from pytpc.api.missions import check_reports, load_static, with_names_of
@@ -219,7 +219,7 @@ def add(
             found[number] = Added(one.path, there[0].place)
         else:
             jobs.append((number, _Job(fleet, one, options, stamp, tuple(earlier))))
-    made = engine.map(_added, [job for _, job in jobs], on_progress)
+    made = engine.map(_added, [job for _, job in jobs], on_progress, _lost)
     # A task may be done twice, and finds its own mission there then.
     made = _told(made, before)
     found |= dict(zip((number for number, _ in jobs), made, strict=True))
@@ -319,6 +319,10 @@ def _added(job: _Job) -> Added:
     except ValueError as error:  # one broken mission among thousands ends nothing
         why = f"cannot be read: {error}"
     return Added(path, why=why.removeprefix(f"{path}: "))
+
+
+def _lost(job: _Job) -> Added:
+    return Added(job.given.path, why=DIED)
 
 
 def _added_anew(job: _Job) -> Added:

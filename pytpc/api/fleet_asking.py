@@ -12,7 +12,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 import pyarrow as pa
 
-from pytpc.api.dask_engine import Engine
+from pytpc.api.dask_engine import DIED, Engine
 from pytpc.api.fleet_judging import judged, notes_on, spread
 from pytpc.api.fleet_missions import (
     EVERY,
@@ -194,14 +194,15 @@ def _names(url: str, patience_s: float, here: str, there: str) -> dict[str, str]
 
 def _joined(parts: list[Digests]) -> Digests:
     return Digests(
-        pa.concat_tables(
-            [_ROWS.empty_table(), *(part.rows for part in parts)]
-        ).unify_dictionaries(),
-        pa.concat_tables(
-            [_VALUES.empty_table(), *(part.values for part in parts)]
-        ).unify_dictionaries(),
+        _one([_ROWS.empty_table(), *(part.rows for part in parts)]),
+        _one([_VALUES.empty_table(), *(part.values for part in parts)]),
         tuple(one for part in parts for one in part.unread),
     )
+
+
+def _one(tables: Sequence[pa.Table]) -> pa.Table:
+    """One table; on the way to another process each chunk has all words with it."""
+    return pa.concat_tables(tables).unify_dictionaries().combine_chunks()
 
 
 @dataclass(frozen=True)
@@ -362,7 +363,7 @@ def find(
     jobs = [
         _Search(fleet, Place(one.robot, one.day, one.mission), asked.build, query) for one in likely
     ]
-    turns = engine.map(_turns, jobs, on_progress)
+    turns = engine.map(_turns, jobs, on_progress, lambda job: ((), (Unread(job.place, DIED),)))
     unread = [one for _, why in turns for one in why]
     found = [(one, own) for one, (own, _) in zip(likely, turns, strict=True) if own]
     return Answered(found, (*asked.digests.unread, *unread))

@@ -54,5 +54,12 @@ def dies_once(job: tuple[Path, int]) -> list[int]:
     return square(number)
 
 
+def dies(number: int) -> list[int]:
+    """The task of number 5 kills its worker whenever it is done."""
+    if number == 5:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return square(number)
+
+
 def fails(number: int) -> list[int]:
     raise ZeroDivisionError(f"{number} / 0")

@@ -8,11 +8,11 @@ import sys
 from pathlib import Path
 
 import pytest
-from recorded_fleet import dies_once, fails, joined, square
+from recorded_fleet import dies, dies_once, fails, joined, square
 
 from patience import PATIENCE_S, wait_for
 from pytpc.api.dask_engine import engine
-from pytpc.base.errors import InputError
+from pytpc.base.errors import InputError, TpcError
 
 pytestmark = pytest.mark.filterwarnings("ignore")
 NUMBERS = list(range(100))
@@ -41,6 +41,15 @@ def test_a_worker_that_is_killed_changes_nothing(tmp_path: Path):
     assert len((tmp_path / "5").read_text()) >= 2
 
 
+def test_an_item_at_which_workers_die_again_and_again():
+    """The others have their results, also those that waited on these workers."""
+    with engine("local", 2) as own:
+        found = own.map(dies, list(range(10)), lost=lambda number: [-number])
+        assert found == [[-5 if n == 5 else n * n] for n in range(10)]
+        with pytest.raises(TpcError, match="workers died again and again"):
+            own.map(dies, [5])
+
+
 def test_a_scheduler_that_runs_already(tmp_path: Path):
     file = tmp_path / "scheduler.json"
     folder = str(Path(__file__).parent)
@@ -61,7 +70,8 @@ def test_a_scheduler_that_runs_already(tmp_path: Path):
             one.wait(PATIENCE_S)
 
 
-def test_nobody_answers():
+def test_nobody_answers(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("pytpc.api.dask_engine._ANSWERS_S", 1)
     what = "no scheduler of Dask answers at tcp://127"
     with pytest.raises(InputError, match=what), engine("tcp://127.0.0.1:9"):
         pass
