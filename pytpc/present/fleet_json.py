@@ -29,6 +29,7 @@ def judgement_json(ranking: FleetRanking) -> Json:
     return {
         "text": ranking.text,
         "accused": ranking.accused,
+        "causes": [_fields(one) for one in ranking.causes],
         "none": finite(ranking.none),
         "bad": ranking.bad,
         "good": ranking.good,

@@ -15,6 +15,7 @@ from typing import Any, TypeVar
 from pytpc.base.atomic import write_atomic
 from pytpc.base.wording import percent
 from pytpc.diagnosis.results.fleet import (
+    FleetCause,
     FleetDrift,
     FleetDrifts,
     FleetOutliers,
@@ -23,6 +24,7 @@ from pytpc.diagnosis.results.fleet import (
     ValueInMissions,
 )
 from pytpc.present.fleet_texts import (
+    CauseTexts,
     DecisionTexts,
     DriftTexts,
     Found,
@@ -94,6 +96,16 @@ class ValueView:
 
 
 @dataclass(frozen=True)
+class CauseView:
+    """A cause; ``more_robots`` are not in ``robots``."""
+
+    texts: CauseTexts
+    bar: Bar
+    robots: tuple[str, ...]
+    more_robots: int
+
+
+@dataclass(frozen=True)
 class SuspectView:
     """A suspect; ``margins`` are a name, a text and a bar each. ``ident`` is that of its card."""
 
@@ -122,12 +134,22 @@ def ranking_page(ranking: FleetRanking, title: str) -> str:
         claim=_short(ranking.text),
         is_sure=ranking.accused is not None,
         notes=_shorts(ranking.notes),
+        causes=[_cause_view(one) for one in ranking.causes] if ranking.is_mixed else [],
         suspects=views,
         cards=views[:CARDS],
         more=len(ranking.suspects) - len(shown),
         none_text=percent(ranking.none),
         none_bar=Bar(0.0, 100 * ranking.none),
         none_after=before,
+    )
+
+
+def _cause_view(one: FleetCause) -> CauseView:
+    return CauseView(
+        _cut(CauseTexts.of(one)),
+        Bar(0.0, 100 * one.probability),
+        _shorts(one.robots[:_ROBOTS_SHOWN]),
+        max(0, len(one.robots) - _ROBOTS_SHOWN),
     )
 
 

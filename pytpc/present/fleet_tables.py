@@ -16,6 +16,7 @@ from pytpc.diagnosis.results.fleet import (
     FleetSuspect,
 )
 from pytpc.present.fleet_texts import (
+    CauseTexts,
     DecisionTexts,
     DriftTexts,
     Found,
@@ -35,6 +36,16 @@ _NUMBER = Heading("#", right=True, in_line=True)
 _ROBOT = Heading("Robot", in_line=True)
 _PARAMETER = Heading("Parameter", in_line=True)
 _COMPARED = Heading("Compared at")
+_CAUSES = (
+    _PARAMETER,
+    Heading("Probability", right=True, in_line=True),
+    Heading("Bad missions", right=True),
+    Heading("Robots"),
+)
+_CAUSE_TERMS = (
+    "Each by the bad missions that no other cause explains. The suspects below are judged as if all"
+    " bad missions had one cause."
+)
 _SUSPECTS = (
     _NUMBER,
     _PARAMETER,
@@ -133,6 +144,12 @@ def print_ranking(console: Console, ranking: FleetRanking, top: int) -> None:
         Text(ranking_title(ranking), style="bold"),
         _indented(ranking.text, "bold" if ranking.accused is not None else "yellow"),
     ]
+    if ranking.is_mixed:
+        parts += [Text(), Text("Causes", style="bold")]
+        parts.append(
+            _listing(console, _CAUSES, [_cells(*CauseTexts.of(one)) for one in ranking.causes])
+        )
+        parts += [_indented(_CAUSE_TERMS, "dim"), Text(), Text("Suspects", style="bold")]
     if shown:
         rows = [_suspect_cells(one) for one in shown]
         parts.append(_listing(console, _SUSPECTS, rows))

@@ -11,6 +11,7 @@ from typing import NamedTuple
 from pytpc.base.wording import listed, many, percent, show
 from pytpc.diagnosis.results.fleet import (
     WHOLE_FLEET,
+    FleetCause,
     FleetDrift,
     FleetDrifts,
     FleetOutliers,
@@ -70,6 +71,22 @@ class SuspectTexts(NamedTuple):
             mean_position="" if one.mean_position is None else f"{one.mean_position:.1f}",
             place="" if one.shows is None else one.shows.place,
             node="" if one.shows is None else one.shows.node,
+        )
+
+
+class CauseTexts(NamedTuple):
+    """One of several causes."""
+
+    parameter: str
+    probability: str
+    bad: str
+    robots: str
+
+    @classmethod
+    def of(cls, one: FleetCause) -> CauseTexts:
+        """How every output says it."""
+        return cls(
+            one.parameter, percent(one.probability), f"{one.bad:,}", listed(one.robots, _ROBOTS)
         )
 
 

@@ -31,7 +31,7 @@ from rich.console import Console
 
 from pytpc.base.columns import write_table
 from pytpc.base.wording import plain_json
-from pytpc.diagnosis.results.fleet import FleetEvidence
+from pytpc.diagnosis.results.fleet import FleetCause, FleetEvidence
 from pytpc.present.fleet_columns import (
     DRIFTS,
     FOUND,
@@ -119,6 +119,38 @@ def test_a_ranking_has_the_judgement_the_reasons_and_the_methods() -> None:
     methods = lines[lines.index("Methods side by side") :]
     assert " ".join(methods[2].split()) == "~safe_distance 1 0.4 1 75 % 1.5"
     assert "robots without a good mission: r7" in lines
+
+
+MIXED = replace(
+    ranking(suspect(1, "~a", 0.5), suspect(2, "~b", 0.4)),
+    causes=(
+        FleetCause("~b", 0.992, 3, ("r1", "r2")),
+        FleetCause("~a", 0.85, 1, tuple(f"r{n}" for n in range(20))),
+    ),
+)
+
+
+def test_several_causes_are_told_in_every_output() -> None:
+    lines = [" ".join(line.split()) for line in printed(print_ranking, MIXED).splitlines()]
+    assert lines[1] == "blame ~b, 99 %, for 3 of 4 bad missions; ~a, 85 %, for 1"
+    table = lines[lines.index("Causes") :]
+    assert table[2:4] == ["~b 99 % 3 r1, r2", "~a 85 % 1 r0, r1, r2, r3 and 16 more"]
+    document = ranking_json(MIXED)
+    assert document["accused"] == "~b"
+    assert document["causes"][0] == {
+        "parameter": "~b", "probability": 0.992, "bad": 3, "robots": ["r1", "r2"],
+    }  # fmt: skip
+    metadata = json.loads(ranking_table(MIXED).schema.metadata[METADATA])
+    assert [one["bad"] for one in metadata["causes"]] == [3, 1]
+    words = Page(ranking_page(MIXED, "A fleet")).words
+    assert "Causes ParameterProbabilityBad missionsRobots ~b 99 % 3 r1, r2" in words
+    assert "and 8 more" in words
+
+
+def test_one_cause_has_no_table_of_its_own() -> None:
+    one = replace(BLAMED, causes=(FleetCause("~safe_distance", 0.9, 3, ("r1",)),))
+    assert "Causes" not in printed(print_ranking, one)
+    assert "Causes" not in Page(ranking_page(one, "A fleet")).words
 
 
 def test_a_ranking_shows_what_importance_puts_first_however_far_it_is() -> None:

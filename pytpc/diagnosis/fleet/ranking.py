@@ -21,15 +21,17 @@ docs/reference/scores.md#fleets has all formulas.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 import pyarrow as pa
 
-from pytpc.base.columns import Floats, Int64s
+from pytpc.base.columns import Bools, Floats, Int64s, frozen
 from pytpc.base.errors import InputError
 from pytpc.base.wording import listed, many
 from pytpc.diagnosis.fleet.behaviour_evidence import MEASURES, Differing, differing
+from pytpc.diagnosis.fleet.causes import causes_in
 from pytpc.diagnosis.fleet.fleet_importance import fleet_importance
 from pytpc.diagnosis.fleet.mission_evidence import NONE, Diagnoses, joined
 from pytpc.diagnosis.fleet.rows import Rows
@@ -72,7 +74,12 @@ def rank_fleet(
     if not rows.bad.any():
         raise InputError("no mission is bad: add missions with marks, or say which are bad")
     settings = Settings.of(rows, values)
-    scored = _scored(rows, settings, joined(rows, settings.parameters, diagnoses))
+
+    def judged(bad: Bools) -> _Scored:
+        own = replace(rows, bad=frozen(bad))
+        return _scored(own, settings, joined(own, settings.parameters, diagnoses))
+
+    scored = judged(rows.bad)
     return FleetRanking(
         suspects=_suspects(rows, settings, scored),
         none=scored.none,
@@ -81,6 +88,9 @@ def rank_fleet(
         robots=len({*rows.robot[rows.bad | rows.good].tolist()}),
         diagnosed=scored.diagnoses.missions,
         notes=_notes(rows, scored.diagnoses),
+        causes=causes_in(
+            settings, Verdicts.of(rows), len(rows.parameters), lambda bad: judged(bad).probability
+        ),
     )
 
 

@@ -41,6 +41,15 @@ class Held(NamedTuple):
     reasons: tuple[str, ...]
 
 
+def fresh_in(settings: Settings, verdicts: Verdicts, parameter: int) -> Int64s:
+    """int64[f]: the bad missions whose robot flew no good one with the value that they had."""
+    own = settings.entries(parameter)
+    mission, code = settings.mission[own].astype(np.int64), settings.value[own]
+    pair = code.astype(np.int64) * len(verdicts.robots) + verdicts.robot[mission]
+    fresh = verdicts.bad[mission] & ~np.isin(pair, pair[verdicts.good[mission]])
+    return mission[fresh]
+
+
 def values_in(settings: Settings, verdicts: Verdicts, parameter: int) -> Held:
     """Count the values of one parameter in the judged missions."""
     own = settings.entries(parameter)

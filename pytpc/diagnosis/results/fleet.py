@@ -99,12 +99,28 @@ class FleetSuspect:
 
 
 @dataclass(frozen=True, slots=True)
+class FleetCause:
+    """A parameter that makes some missions go wrong; others may have another cause.
+
+    ``probability`` is that by all good missions and by the bad ones that no other cause explains.
+    It explains so many ``bad`` missions, of these ``robots``: those with a value that no good
+    mission of the robot has, and which no likelier cause explains.
+    """
+
+    parameter: str
+    probability: float
+    bad: int
+    robots: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class FleetRanking:
     """Which parameter makes missions go wrong: the suspects, the likeliest first.
 
-    ``none`` is the probability that it is none of them. ``bad`` and ``good`` count the missions, of
-    so many ``robots``; ``diagnosed`` are the bad ones with a diagnosis of their own. ``notes`` say
-    what keeps the answer from being surer.
+    The suspects are judged as if there was one cause; ``none`` is the probability that it is none
+    of them. ``bad`` and ``good`` count the missions, of so many ``robots``; ``diagnosed`` are the
+    bad ones with a diagnosis of their own. ``notes`` say what keeps the answer from being surer.
+    ``causes`` are the parameters that can be blamed, however many there are.
     """
 
     suspects: tuple[FleetSuspect, ...]
@@ -114,13 +130,26 @@ class FleetRanking:
     robots: int
     diagnosed: int
     notes: tuple[str, ...]
+    causes: tuple[FleetCause, ...] = ()
 
     @property
     def accused(self) -> str | None:
-        """The parameter that is likely enough to be blamed, and compared; None without one."""
+        """The parameter that is likely enough to be blamed, and compared; None without one.
+
+        Of several causes it is the first one.
+        """
+        if self.causes:
+            return self.causes[0].parameter
         first = next(iter(self.suspects), None)
         sure = first is not None and first.probability >= SURE and first.shows is not None
         return first.parameter if first is not None and sure else None
+
+    @property
+    def is_mixed(self) -> bool:
+        """Whether there are several causes, or one that stands out only beside others."""
+        return len(self.causes) > 1 or (
+            bool(self.causes) and max(one.probability for one in self.suspects) < SURE
+        )
 
     @property
     def text(self) -> str:
@@ -129,6 +158,13 @@ class FleetRanking:
             return "no parameter is compared, and none was recorded"
         first = self.suspects[0]
         sure, none = percent(first.probability), percent(self.none)
+        if self.is_mixed:
+            blamed = [
+                f"{one.parameter}, {percent(one.probability)}, for {one.bad:,}"
+                for one in self.causes
+            ]
+            of = f"of {many(self.bad, 'bad mission')}"
+            return f"blame {'; '.join([f'{blamed[0]} {of}', *blamed[1:]])}"
         if self.accused is not None:
             return f"blame {first.parameter}: {sure}; none of the parameters: {none}"
         if self.none > first.probability:
