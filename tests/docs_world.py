@@ -77,7 +77,7 @@ HOW: dict[str, Long | Keys] = {
     r"roslaunch": Long(r"process\[mission-\d+\]: started"),
     r"rosbag record": Long("Subscribing to"),
     r"pytpc live": Long(r"http://\S+/\?token=", alone=True),
-    r"pytpc stream (?!MISSION|mission)": Long("streaming from", alone=True, status=130),
+    r"pytpc stream (?!MISSION|mission)": Long("streaming from", alone=True),
     "rerun": Long("Listening for gRPC", status=130),
     r"pytpc record ws mission": Long(r"[1-9]\d* marks?", alone=True),
     r"pytpc record (?!-)": Long(r"[1-9]\d* reports,", alone=True),

@@ -130,6 +130,7 @@ class _Opened:
         viewer: where it is shown, if it is.
         is_over: whether its recording has ended.
         is_alone: whether nothing is left to do without the viewer.
+        begins: what is said when it begins.
     """
 
     def __init__(
@@ -139,7 +140,9 @@ class _Opened:
         is_over: Callable[[], bool],
         *,
         is_alone: bool,
+        begins: str = "",
     ) -> None:
+        self._begins = begins
         self._stream = stream
         self._viewer = viewer
         self._is_over = is_over
@@ -153,6 +156,8 @@ class _Opened:
         Raises:
             RunError: the viewer is gone, and nobody else gets the stream.
         """
+        if self._begins:
+            say(self._begins)
         until_s = math.inf if seconds is None else time.monotonic() + seconds
         while not self._is_over() and time.monotonic() < until_s:
             time.sleep(_TURN_S)
@@ -199,8 +204,13 @@ def _opened(given: _StreamArguments, stack: ExitStack) -> _Opened:
     judged = LiveDiagnosis(asked_of_graph(graph.master, static, file, question, good))
     stream = Stream(feed, side.now_ns, side.marks, judged, outlets)
     stack.callback(_close, stream, viewer)
-    _tell(given, graph)
-    return _Opened(stream, viewer, lambda: False, is_alone=not given.diagnostics)
+    return _Opened(
+        stream,
+        viewer,
+        lambda: False,
+        is_alone=not given.diagnostics,
+        begins=_begins(given, graph),
+    )
 
 
 def _recorded(given: _StreamArguments, question: Question, stack: ExitStack) -> _Opened:
@@ -297,12 +307,12 @@ def _viewer(
     return found
 
 
-def _tell(given: _StreamArguments, graph: UsedGraph) -> None:
+def _begins(given: _StreamArguments, graph: UsedGraph) -> str:
     where: Sequence[str] = [
         *(["/diagnostics"] if given.diagnostics else []),
         *([f"Rerun at {given.viewer}"] if given.viewer is not None else []),
     ]
-    say(
+    return (
         f"pytpc: streaming from {plain(words_of(graph.master))} to {plain(' and '.join(where))};"
         " Ctrl-C ends it"
     )
