@@ -162,9 +162,9 @@ def _judged(job: _Job) -> Judged:
         good = [_good(job.fleet, place) for place in job.good]
         with opened(job.fleet, job.bad.place) as mission:
             run = mission.in_build(static)
-            asked = AskedMission.of(
-                run, static, Question(declared=()), [one.run for one in good if one is not None]
-            )
+            # Which values are wrong, the whole fleet says: nobody may have watched these missions.
+            others = [one.run.in_build(static).recording for one in good if one is not None]
+            asked = AskedMission.of(run, static, Question(declared=(), others=others))
             found = blame(asked.run.recording, asked.static_info, asked.question)
     except InputError as error:
         return Judged(JUDGED.empty_table(), (Unread(job.bad.place, error.message),))

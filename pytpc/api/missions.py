@@ -103,15 +103,18 @@ def with_names_of(recording: Recording, static_info: StaticInfo, source: Path | 
 
 
 def about_mission(question: Question, static_info: StaticInfo, named: StaticInfo) -> Question:
-    """The question whose good run has the keys of a mission (`with_keys_of`).
+    """The question whose other runs have the keys of a mission (`with_keys_of`).
 
     Args:
         question: of any mission.
         static_info: of the build.
         named: the same with the names of this mission, from ``with_names_of``.
     """
-    good = [with_keys_of(one, static_info, named) for one in question.references]
-    return replace(question, references=good)
+    good, others = (
+        [with_keys_of(one, static_info, named) for one in runs]
+        for runs in (question.references, question.others)
+    )
+    return replace(question, references=good, others=others)
 
 
 def check_reports(recording: Recording, static_info: StaticInfo, source: Path) -> None:

@@ -36,6 +36,8 @@ class Question:
             seconds.
         top: for how many suspects a value is suggested.
         references: good runs of the same build, the last one last.
+        others: runs of the same build of which nobody says that they went right. A value that one
+            of them had may be wrong, too; what another value would have changed is replayed.
         differences: what differs from these runs, as far as that is known.
         changes: what was changed since the robot worked, newest last; empty if not known. If a
             parameter was changed several times, the oldest change has the value that worked.
@@ -55,6 +57,7 @@ class Question:
     window_s: float = WINDOW_S
     top: int = 5
     references: Sequence[Recording] = ()
+    others: Sequence[Recording] = ()
     differences: RunDifferences | None = None
     changes: Sequence[Change] = ()
     declared: Sequence[Declared] | None = None

@@ -171,6 +171,16 @@ def test_a_good_run_and_the_changes_together():
     assert found.none > 0.5
 
 
+def test_a_run_that_nobody_watched_vetoes_no_value():
+    """It may have gone wrong unseen: with another run the threshold is replayed."""
+    clean = Recording("clean", events([(1, 0, 0, 0.1, 0.9), (2, 1, 0, 1, 9)]), (), 0, ns(80))
+    unseen = mission(())
+    beside = blame(mission(), STATIC, Question(references=[unseen, clean]))
+    among = blame(mission(), STATIC, Question(others=[unseen, clean]))
+    assert beside.accused is None
+    assert among.accused == "~gate"
+
+
 # Only the changes of results were reported; the rest came as a summary.
 def test_summaries_are_told():
     builder = SummaryBuilder()

@@ -15,6 +15,7 @@ from pytpc.diagnosis.ranking.known_good import (
     of_change,
     of_changes,
     of_defaults,
+    of_others,
     of_references,
 )
 from pytpc.diagnosis.ranking.mark_evidence import (
@@ -375,6 +376,16 @@ def test_a_good_run_tells_which_threshold_is_another():
     runs = [there, events([(1, 0, 0, 1, 4)]), there]
     gate = of_references(STATIC, tpcs, here, runs).prior[tpcs.names.index("~gate")]
     assert gate == UNCHANGED
+
+
+# Nobody watched these runs: what one of them had may be wrong, too. 2 is the nearest other value.
+def test_runs_of_which_nobody_knows_more_are_replayed_only():
+    tpcs = Tpcs.of(STATIC)
+    here = events([(1, 0, 0, 1, 4), (1, 1, 0, 1, 4)])
+    runs = [events([(1, 0, 0, 1, value), (1, 1, 0, 1, 4)]) for value in (4, 9, 2)]
+    found = of_others(STATIC, tpcs, here, runs)
+    assert found.prior.tolist() == [0.0] * len(tpcs.names)
+    assert (found.others, found.same) == ({key(0): 2.0}, {key(1)})
 
 
 # 4 is between 2 and 7, and nearer to 2.

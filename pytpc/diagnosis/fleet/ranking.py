@@ -2,14 +2,14 @@
 
 The score of a parameter, in log odds, is
 
-    prior + diagnoses + VALUES * values + behaviour
+    prior + diagnoses + values + behaviour
 
 - *prior*: four of five fleets have a parameter to blame (``NONE``), each compared one as likely;
   what no comparison reports and has several values in the fleet less (``UNKNOWN_CHARGE``).
 - *diagnoses*: what the bad missions' own diagnoses say (`mission_evidence`).
 - *values*: how well the parameter's values explain which missions went wrong (`value_evidence`).
-  They count ``VALUES``: the diagnoses beside good runs saw the values of these runs, and the
-  missions of one day share people, place and weather.
+  The diagnoses do not count them again: they are made among missions that may have gone wrong
+  unseen (`Question.others`).
 - *behaviour*: bounded, see `behaviour_evidence`.
 
 The probabilities are the scores' softmax with what the diagnoses say of "none of them", which is 0
@@ -45,9 +45,6 @@ from pytpc.diagnosis.results.fleet import (
     FleetRanking,
     FleetSuspect,
 )
-
-VALUES = 0.5
-"""The weight of the values, see the module's docstring. By reason; not fitted."""
 
 _DIGITS = 9
 """Scores that differ by rounding only are tied."""
@@ -117,7 +114,7 @@ def _scored(rows: Rows, settings: Settings, diagnoses: Diagnoses) -> _Scored:
     suspected[compared:] = [_may_matter(rows, settings, one) for one in range(compared, every)]
     prior = np.full(every, math.log((1.0 - NONE) / NONE) - math.log(max(1, suspected.sum())))
     prior[compared:] += UNKNOWN_CHARGE
-    scores = prior + diagnoses.evidence + VALUES * values + behaviour
+    scores = prior + diagnoses.evidence + values + behaviour
     scores = np.where(suspected, scores, -np.inf)
     probability, none = softmax(scores, diagnoses.none)
     importance = np.append(fleet_importance(rows), np.zeros(every - compared))
@@ -214,7 +211,7 @@ def _suspect(
         evidence=FleetEvidence(
             float(scored.prior[one]),
             float(scored.diagnoses.evidence[one]),
-            VALUES * float(scored.values[one]),
+            float(scored.values[one]),
             float(scored.behaviour[one]),
         ),
         importance=float(scored.importance[one]),

@@ -17,7 +17,7 @@ from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.ranking.grouped import suspect_groups
 from pytpc.diagnosis.ranking.mark_ranking import outside
 from pytpc.diagnosis.ranking.other_nodes import OtherNodes
-from pytpc.diagnosis.ranking.other_values import diagnose_beside, unheard
+from pytpc.diagnosis.ranking.other_values import diagnose_among, diagnose_beside, unheard
 from pytpc.diagnosis.ranking.posterior import Decisive, Posterior
 from pytpc.diagnosis.ranking.reach import place_notes
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
@@ -47,9 +47,9 @@ def blame(recording: Recording, static_info: StaticInfo, question: Question = PL
     Args:
         recording: the mission with its marks.
         static_info: what the analysis found.
-        question: its ``references``, ``changes`` and ``differences``. The ``types`` ``believe`` and
-            ``doubt`` are the same here: types are never certain. A mark without a report in
-            ``window_s`` before it does not count.
+        question: its ``references``, ``changes`` and ``differences``, or ``others`` in their place.
+            The ``types`` ``believe`` and ``doubt`` are the same here: types are never certain. A
+            mark without a report in ``window_s`` before it does not count.
     """
     if question.types == "ignore":
         untyped = tuple(replace(mark, type=None) for mark in recording.marks)
@@ -61,13 +61,7 @@ def blame(recording: Recording, static_info: StaticInfo, question: Question = PL
     notes = (*_notes(recording, beyond), *place_notes(recording, static_info))
     if not recording.marks or all(beyond) or not len(events):
         return Blame((), 1.0, len(tpcs.names), recording.marks, notes)
-    found = diagnose_beside(
-        recording,
-        static_info,
-        references=question.references,
-        changes=question.changes,
-        differences=question.differences,
-    )
+    found = _diagnosed(recording, static_info, question)
     streams = ResultStreams.of(with_summarised(recording), tpcs)
     others = OtherNodes.of(streams, tpcs, static_info, recording.wiring)
     compared = _compared(found, static_info, recording.marks, events)
@@ -88,6 +82,18 @@ def blame(recording: Recording, static_info: StaticInfo, question: Question = PL
         return made
     return replace(
         made, notes=(*notes, "one mark says little: mark the error each time it happens")
+    )
+
+
+def _diagnosed(recording: Recording, static_info: StaticInfo, question: Question) -> Posterior:
+    if question.others:
+        return diagnose_among(recording, static_info, question.others)
+    return diagnose_beside(
+        recording,
+        static_info,
+        references=question.references,
+        changes=question.changes,
+        differences=question.differences,
     )
 
 

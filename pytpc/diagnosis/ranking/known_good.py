@@ -7,7 +7,7 @@ of those that differ, which are replayed (`pytpc.diagnosis.ranking.replayed_outc
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple, TypeAlias
 
@@ -167,26 +167,57 @@ def of_references(
     nearest one of a good run. Nothing is known of a parameter that changed during a run, or was not
     compared in the mission and in a good run.
     """
-    here = thresholds_of(events, tpcs)
-    there = [thresholds_of(one, tpcs) for one in references]
     prior: dict[str, float] = {}
     others: dict[str, Other] = {}
     same: set[str] = set()
-    for code, name in enumerate(tpcs.parameters):
-        key, now = tpcs.keys[code], float(here[code])
-        known = [float(one[code]) for one in there if not math.isnan(one[code])]
-        comparison = static_info.comparisons[key]
-        if math.isnan(now) or not known or is_text(comparison, static_info.unit_of(key)):
-            continue
-        is_between = comparison.relation in _ORDERED and min(known) < now < max(known)
-        least = BETWEEN if is_between else 0.0
+    for code, now, known in _known_elsewhere(static_info, tpcs, events, references):
+        key, name = tpcs.keys[code], tpcs.parameters[code]
+        ordered = static_info.comparisons[key].relation in _ORDERED
+        least = BETWEEN if ordered and min(known) < now < max(known) else 0.0
         kept = min(least, *(of_change(then, now) for then in known))
         prior[name] = max(prior.get(name, UNCHANGED), kept)
         if kept == UNCHANGED:
             same.add(key)
         else:
-            others[key] = min(known, key=lambda then: (abs(then - now), then))
+            others[key] = _nearest(now, known)
     return KnownGood(_by_name(tpcs, prior), others, frozenset(same))
+
+
+def of_others(
+    static_info: StaticInfo, tpcs: Tpcs, events: Events, runs: Sequence[Events]
+) -> KnownGood:
+    """What the thresholds of runs say of which nobody knows that they went right.
+
+    No parameter is less likely for that. The other threshold is the nearest one of those that
+    differ.
+    """
+    others: dict[str, Other] = {}
+    same: set[str] = set()
+    for code, now, known in _known_elsewhere(static_info, tpcs, events, runs):
+        if differing := [then for then in known if then != now]:
+            others[tpcs.keys[code]] = _nearest(now, differing)
+        else:
+            same.add(tpcs.keys[code])
+    return KnownGood(np.zeros(len(tpcs.names)), others, frozenset(same))
+
+
+def _known_elsewhere(
+    static_info: StaticInfo, tpcs: Tpcs, events: Events, runs: Sequence[Events]
+) -> Iterator[tuple[int, float, list[float]]]:
+    """Each comparison with one threshold here, that, and those of the runs; not of texts."""
+    here = thresholds_of(events, tpcs)
+    there = [thresholds_of(one, tpcs) for one in runs]
+    for code, key in enumerate(tpcs.keys):
+        now = float(here[code])
+        known = [float(one[code]) for one in there if not math.isnan(one[code])]
+        if math.isnan(now) or not known:
+            continue
+        if not is_text(static_info.comparisons[key], static_info.unit_of(key)):
+            yield code, now, known
+
+
+def _nearest(now: float, known: Sequence[float]) -> float:
+    return min(known, key=lambda then: (abs(then - now), then))
 
 
 def of_defaults(static_info: StaticInfo, tpcs: Tpcs, events: Events) -> KnownGood:

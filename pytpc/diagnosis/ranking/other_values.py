@@ -20,6 +20,7 @@ from pytpc.diagnosis.ranking.known_good import (
     before_changes,
     of_changes,
     of_defaults,
+    of_others,
     of_references,
     of_settings,
 )
@@ -112,7 +113,27 @@ def diagnose_beside(
             one of a reference counts.
         differences: what differs from the references, for ``nobody``.
     """
-    found = _by_values(recording, static_info, references, changes, nobody(differences))
+    known = _known(recording, static_info, references, changes)
+    found = _by_values(recording, static_info, known, changes, nobody(differences))
+    return _in_reach(found, recording, static_info)
+
+
+def diagnose_among(
+    recording: Recording, static_info: StaticInfo, others: Sequence[Recording]
+) -> Posterior:
+    """The same among runs of which nobody says that they went right, at least one.
+
+    What their values would have changed is replayed, and says nothing more.
+    """
+    here = with_summarised(recording)
+    known = of_others(static_info, Tpcs.of(static_info), here, list(map(with_summarised, others)))
+    return _in_reach(
+        _by_values(recording, static_info, [known], (), NOBODY), recording, static_info
+    )
+
+
+def _in_reach(found: Posterior, recording: Recording, static_info: StaticInfo) -> Posterior:
+    """The diagnosis with what the graph says of who could have done it."""
     prior = reach_prior(recording, static_info, Tpcs.of(static_info))
     return found if not prior.any() else _with_prior(found, prior)
 
@@ -129,18 +150,15 @@ def _with_prior(found: Posterior, prior: Floats) -> Posterior:
     )
 
 
-def _by_values(
+def _known(
     recording: Recording,
     static_info: StaticInfo,
     references: Sequence[Recording],
     changes: Sequence[Change],
-    none_score: float,
-) -> Posterior:
-    """The diagnosis without the graph."""
+) -> list[KnownGood]:
+    """What the changes and the good runs say of the values, in this order."""
     tpcs = Tpcs.of(static_info)
     here = with_summarised(recording)
-    default = of_defaults(static_info, tpcs, here)
-    anew = of_settings(static_info, tpcs, here)
     found: list[KnownGood] = []
     if changes:
         old = before_changes(static_info, changes)
@@ -151,6 +169,22 @@ def _by_values(
         texts = [one for one in changes if math.isnan(one.old) or math.isnan(one.new)]
         is_text = of_changes(tpcs.names, texts) == 0.0
         found.append(known._replace(prior=np.where(is_text, np.nan, known.prior)))
+    return found
+
+
+def _by_values(
+    recording: Recording,
+    static_info: StaticInfo,
+    known: Sequence[KnownGood],
+    changes: Sequence[Change],
+    none_score: float,
+) -> Posterior:
+    """The diagnosis without the graph."""
+    tpcs = Tpcs.of(static_info)
+    here = with_summarised(recording)
+    default = of_defaults(static_info, tpcs, here)
+    anew = of_settings(static_info, tpcs, here)
+    found = list(known)
     if found:
         prior = np.fmin.reduce([one.prior for one in found])
         prior[np.isnan(prior)] = UNCHANGED / 2
