@@ -77,5 +77,17 @@ def test_what_no_comparison_reports_is_no_cause() -> None:
     assert [one.parameter for one in found.causes] == ["/nav/p0"]
 
 
+@pytest.mark.parametrize(("unseen", "explained"), [(1, 4), (2, 0)])
+def test_a_mission_that_went_wrong_unseen(unseen: int, explained: int) -> None:
+    """r0 went wrong with 0.9 in four missions, and one or two with it count as good."""
+    rows = fleet(*[{1: 0.1}] * 4, good=24)
+    for n in range(4 + unseen):
+        flight = Flight(f"w{n}", "r0", 20 + n, "bad" if n < 4 else "good")
+        rows += [digest(flight, each, 0.9 if each == 0 else 0.5) for each in range(6)]
+    found = {name: bad for name, bad, _ in causes(rows)}
+    assert found.get("/nav/p0", 0) == explained
+    assert found["/nav/p1"] == 4
+
+
 def test_nothing_is_wrong() -> None:
     assert causes(fleet(*[{}] * 4)) == []

@@ -1,6 +1,6 @@
 """Several causes in one fleet: each explains some of the bad missions.
 
-A cause explains the bad missions with a value that no good mission of the robot has. The likeliest
+A cause explains the bad missions with a value with which the robot mostly went wrong. The likeliest
 suspect is taken, the missions that it explains are left out, the rest is judged again, and so on
 (as Liblit et al. 2005 eliminate predicates). Then each of them is judged once more by the bad
 missions that none of the others explains; those that are sure then are the causes. A cause that no
@@ -16,7 +16,7 @@ import numpy as np
 
 from pytpc.base.columns import Bools, Floats, Int64s
 from pytpc.diagnosis.fleet.settings import Settings
-from pytpc.diagnosis.fleet.values_in_missions import Verdicts, fresh_in
+from pytpc.diagnosis.fleet.values_in_missions import Verdicts, gone_wrong_with
 from pytpc.diagnosis.results.fleet import FleetCause
 from pytpc.diagnosis.results.suspects import SURE
 
@@ -53,8 +53,8 @@ def causes_in(
         best = int(np.argmax(probability)) if compared else -1
         if best < 0 or probability[best] < LIKELY:
             break
-        fresh = fresh_in(settings, verdicts, best)
-        missions = fresh[left[fresh]]
+        wrong = gone_wrong_with(settings, verdicts, best)
+        missions = wrong[left[wrong]]
         if not missions.size:
             break
         found.append(_Explained(best, missions))

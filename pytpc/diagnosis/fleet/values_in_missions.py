@@ -14,6 +14,8 @@ from pytpc.diagnosis.results.fleet import ValueInMissions
 
 MOST_VALUES = 8
 """So many values of a parameter are listed."""
+MOSTLY = 4
+"""A value is mostly wrong if it has so many bad missions for each good one."""
 _NAMED = 3
 
 
@@ -41,13 +43,20 @@ class Held(NamedTuple):
     reasons: tuple[str, ...]
 
 
-def fresh_in(settings: Settings, verdicts: Verdicts, parameter: int) -> Int64s:
-    """int64[f]: the bad missions whose robot flew no good one with the value that they had."""
+def gone_wrong_with(settings: Settings, verdicts: Verdicts, parameter: int) -> Int64s:
+    """int64[f]: the bad missions with a value with which their robot mostly went wrong.
+
+    At least four of five: a mission that goes wrong unseen counts as good.
+    """
     own = settings.entries(parameter)
     mission, code = settings.mission[own].astype(np.int64), settings.value[own]
     pair = code.astype(np.int64) * len(verdicts.robots) + verdicts.robot[mission]
-    fresh = verdicts.bad[mission] & ~np.isin(pair, pair[verdicts.good[mission]])
-    return mission[fresh]
+    bad, good = (
+        np.bincount(pair[which[mission]], minlength=int(pair.max(initial=0)) + 1)
+        for which in (verdicts.bad, verdicts.good)
+    )
+    mostly = bad >= MOSTLY * good
+    return np.asarray(mission[verdicts.bad[mission] & mostly[pair]])
 
 
 def values_in(settings: Settings, verdicts: Verdicts, parameter: int) -> Held:

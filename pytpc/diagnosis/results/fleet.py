@@ -103,8 +103,8 @@ class FleetCause:
     """A parameter that makes some missions go wrong; others may have another cause.
 
     ``probability`` is that by all good missions and by the bad ones that no other cause explains.
-    It explains so many ``bad`` missions, of these ``robots``: those with a value that no good
-    mission of the robot has, and which no likelier cause explains.
+    It explains so many ``bad`` missions, of these ``robots``: those with a value with which the
+    robot mostly went wrong, and which no likelier cause explains.
     """
 
     parameter: str
