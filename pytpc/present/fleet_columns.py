@@ -17,7 +17,6 @@ from pytpc.present.fleet_json import (
     drifts_json,
     found_json,
     judgement_json,
-    mission_json,
     outliers_json,
     ranking_json,
     tested_json,
@@ -25,7 +24,13 @@ from pytpc.present.fleet_json import (
 from pytpc.present.fleet_texts import Found
 
 METADATA = b"pytpc"
-_TEXTS = pa.list_(pa.field("item", pa.string(), nullable=False))
+
+
+def _list_of(kind: pa.DataType) -> pa.DataType:
+    return pa.list_(pa.field("item", kind, nullable=False))
+
+
+_TEXTS = _list_of(pa.string())
 
 
 def _fields(names: str, kind: pa.DataType, *, nullable: bool = False) -> list[pa.Field]:
@@ -50,7 +55,7 @@ RANKING = pa.schema(
         *_fields("importance", pa.float64()),
         *_fields("importance_position", pa.int64(), nullable=True),
         *_fields("differs mean_position", pa.float64(), nullable=True),
-        *_fields("values", pa.list_(pa.field("item", _VALUE, nullable=False))),
+        *_fields("values", _list_of(_VALUE)),
         *_fields("more_values", pa.int64()),
         *_fields("margin_bad margin_good", pa.float64(), nullable=True),
         *_fields("unit", pa.string()),
@@ -88,6 +93,14 @@ OUTLIERS = pa.schema(
         *_fields("set_otherwise", pa.bool_()),
     ]
 )
+_TURN = pa.struct(
+    [
+        *_fields("time_ns", pa.int64()),
+        *_fields("key node parameter place", pa.string()),
+        *_fields("result", pa.bool_()),
+        *_fields("value threshold margin", pa.float64(), nullable=True),
+    ]
+)
 FOUND = pa.schema(
     [
         *_fields("robot day mission", pa.string()),
@@ -95,25 +108,8 @@ FOUND = pa.schema(
         *_fields("bad", pa.bool_()),
         *_fields("turns", pa.int64()),
         *_fields("least", pa.float64(), nullable=True),
-        *_fields(
-            "where",
-            pa.list_(
-                pa.field(
-                    "item",
-                    pa.struct(_fields("key node parameter place", pa.string())),
-                    nullable=False,
-                )
-            ),
-        ),
-    ]
-)
-TURNS = pa.schema(
-    [
-        *_fields("robot day mission", pa.string()),
-        *_fields("time_ns", pa.int64()),
-        *_fields("key node parameter place", pa.string()),
-        *_fields("result", pa.bool_()),
-        *_fields("value threshold margin", pa.float64(), nullable=True),
+        *_fields("where", _list_of(pa.struct(_fields("key node parameter place", pa.string())))),
+        *_fields("turned", _list_of(_TURN)),
     ]
 )
 
@@ -164,17 +160,7 @@ def outliers_table(outliers: FleetOutliers) -> pa.Table:
 
 def found_table(found: Sequence[Found]) -> pa.Table:
     """A row for each mission, in the schema ``FOUND``."""
-    return _table([mission_json(one) for one, _ in found], FOUND)
-
-
-def turns_table(found: Sequence[Found]) -> pa.Table:
-    """A row for each turn of each mission, in the schema ``TURNS``."""
-    rows = [
-        {**_inside(turn), "robot": mission.robot, "day": mission.day, "mission": mission.mission}
-        for (mission, _), fields in zip(found, found_json(found), strict=True)
-        for turn in _listed(fields, "turned")
-    ]
-    return _table(rows, TURNS)
+    return _table(found_json(found), FOUND)
 
 
 def _place(one: FleetPlace | None) -> Json:

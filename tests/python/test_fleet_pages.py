@@ -38,12 +38,10 @@ from pytpc.present.fleet_columns import (
     METADATA,
     OUTLIERS,
     RANKING,
-    TURNS,
     drifts_table,
     found_table,
     outliers_table,
     ranking_table,
-    turns_table,
 )
 from pytpc.present.fleet_json import drifts_json, found_json, outliers_json, ranking_json
 from pytpc.present.fleet_page import (
@@ -513,7 +511,6 @@ TABLES = (
     (drifts_table, DRIFTS, "drifts", 1),
     (outliers_table, OUTLIERS, "outliers", 2),
     (found_table, FOUND, "found", 1),
-    (turns_table, TURNS, "found", 1),
 )
 
 
@@ -556,5 +553,5 @@ def test_the_columns_of_outliers() -> None:
 
 
 def test_numbers_that_are_none_are_null() -> None:
-    row = turns_table([(mission(), [replace(turn(), value=math.nan, margin=None)])]).to_pylist()[0]
-    assert row["value"] is row["margin"] is None
+    (row,) = found_table([(mission(), [replace(turn(), value=math.nan, margin=None)])]).to_pylist()
+    assert row["turned"][0]["value"] is row["turned"][0]["margin"] is None
