@@ -64,6 +64,7 @@ RANKING = pa.schema(
         *_fields("reason", pa.string()),
     ]
 )
+_DAY_MARGIN = pa.struct([*_fields("day", pa.string()), *_fields("margin", pa.float64())])
 DRIFTS = pa.schema(
     [
         *_fields("robot", pa.string(), nullable=True),
@@ -78,6 +79,7 @@ DRIFTS = pa.schema(
         *_fields("clear", pa.bool_()),
         *_fields("turns_on earliest latest", pa.string(), nullable=True),
         *_fields("turned", pa.int64()),
+        *_fields("margins", _list_of(_DAY_MARGIN)),
     ]
 )
 OUTLIERS = pa.schema(

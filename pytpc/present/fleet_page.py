@@ -38,7 +38,7 @@ from pytpc.present.fleet_texts import (
     outliers_title,
     ranking_title,
 )
-from pytpc.present.page.drift_chart import DriftChart, DriftSeries, drift_chart
+from pytpc.present.page.drift_chart import DriftChart, drift_chart
 from pytpc.present.page.environment import environment, page_script, script_hash
 from pytpc.present.page.plots import shortened
 
@@ -224,7 +224,6 @@ class DriftView:
 def drifts_page(
     drifts: FleetDrifts,
     title: str,
-    series: Sequence[DriftSeries | None] | None = None,
     on_figure: Callable[[], None] = lambda: None,
 ) -> str:
     """The page of the margins that drift, with a chart for each of the first ones.
@@ -232,15 +231,11 @@ def drifts_page(
     Args:
         drifts: the drifts.
         title: of the page.
-        series: the daily margins of each drift, in the order of ``drifts.drifts``; where there are
-            none, a chart shows only the trend.
         on_figure: called after each chart: those of a full page take seconds.
     """
     views = []
     for n, one in enumerate(drifts.drifts[:ROWS]):
-        chart = (
-            _chart(one, None if series is None else series[n], f"d{n + 1}") if n < CARDS else None
-        )
+        chart = _chart(one, f"d{n + 1}") if n < CARDS else None
         if n < CARDS:
             on_figure()
         texts = _cut(DriftTexts.of(one))
@@ -256,11 +251,11 @@ def drifts_page(
     )
 
 
-def _chart(one: FleetDrift, series: DriftSeries | None, ident: str) -> DriftChart | None:
+def _chart(one: FleetDrift, ident: str) -> DriftChart | None:
     texts = DriftTexts.of(one)
     label = f"{texts.measure} margin of {texts.parameter}, {texts.robot}, {texts.since} to"
     when = f", turns on {one.turns_on}" if one.turns_on is not None else ""
-    return drift_chart(one, series, f"{ident}-c", _short(f"{label} {texts.until}{when}"))
+    return drift_chart(one, f"{ident}-c", _short(f"{label} {texts.until}{when}"))
 
 
 @dataclass(frozen=True)

@@ -22,9 +22,8 @@ from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 
-from pytpc.diagnosis.results.fleet import FleetCause
+from pytpc.diagnosis.results.fleet import DayMargin, FleetCause
 from pytpc.present.fleet_page import (
-    DriftSeries,
     drifts_page,
     found_page,
     outliers_page,
@@ -74,13 +73,14 @@ def opened(browser, tmp_path):
 
 def pages():
     long = suspect(1, LONG, 0.4, values=(value(LONG, 3, 1, (LONG,)),), robots=(LONG,), reason=LONG)
-    series = DriftSeries(["2026-11-01", "2026-11-05", "2026-11-10"], [0.4, 0.3, 0.2])
+    days = {"2026-11-01": 0.4, "2026-11-05": 0.3, "2026-11-10": 0.2}
+    long_drift = drift(LONG, LONG, margins=tuple(map(DayMargin, days, days.values())))
     mixed = ranking(long, suspect(2, "~b", 0.1), notes=(LONG,))
     mixed = replace(mixed, causes=(FleetCause(LONG, 0.9, 3, (LONG,) * 20),) * 2)
     odd = replace(setting(LONG, LONG), value=LONG, usual=LONG)
     return {
         "ranking": ranking_page(mixed, LONG),
-        "drifts": drifts_page(drifts(drift(LONG, LONG), drift()), LONG, [series, None]),
+        "drifts": drifts_page(drifts(long_drift, drift()), LONG),
         "outliers": outliers_page(outliers((odd,), (decision(LONG, LONG), decision())), LONG),
         "found": found_page([(mission(LONG, LONG), [turn()]), (mission(), [])], LONG),
     }

@@ -51,6 +51,10 @@ def test_a_day_counts_once():
     rows += [digest(Flight("again", "r1", 1), least=11.0, turns=0, median=5.0)]
     assert drifts(*rows).drifts[0].now == 6.0
     assert drifts(*rows).drifts[0].days == 5
+    assert [tuple(one) for one in drifts(*rows).drifts[0].margins] == [
+        ("2026-03-01", 10.0), ("2026-03-02", 9.0), ("2026-03-03", 8.0),
+        ("2026-03-04", 7.0), ("2026-03-05", 6.0),
+    ]  # fmt: skip
 
 
 def test_what_rises_does_not_turn_and_comes_last():
@@ -106,6 +110,8 @@ def test_over_the_fleet_only_days_of_one_robot_are_compared():
     found = [one for one in drifts(*rows).drifts if one.robot == WHOLE_FLEET]
     assert [(one.days, one.per_day) for one in found] == [(12, -1.0)]
     assert found[0].now == pytest.approx(56.0)
+    # No day is 90 above the one before: both robots are moved to the level of 67 on March 1.
+    assert [one.margin for one in found[0].margins] == [67.0 - day for day in range(12)]
     assert found[0].is_clear
 
 

@@ -31,7 +31,7 @@ from rich.console import Console
 
 from pytpc.base.columns import write_table
 from pytpc.base.wording import plain_json
-from pytpc.diagnosis.results.fleet import FleetCause, FleetEvidence
+from pytpc.diagnosis.results.fleet import DayMargin, FleetCause, FleetEvidence
 from pytpc.present.fleet_columns import (
     DRIFTS,
     FOUND,
@@ -47,7 +47,6 @@ from pytpc.present.fleet_json import drifts_json, found_json, outliers_json, ran
 from pytpc.present.fleet_page import (
     CARDS,
     ROWS,
-    DriftSeries,
     drifts_page,
     found_page,
     outliers_page,
@@ -367,9 +366,10 @@ def test_a_page_of_many_suspects_stays_small() -> None:
 
 def test_charts_of_drifts() -> None:
     days = [f"2026-11-{n:02d}" for n in range(1, 11)]
-    series = DriftSeries(days, [0.38 - 0.02 * n for n in range(9)] + [math.nan])
+    values = [0.38 - 0.02 * n for n in range(9)] + [math.nan]
+    shown = drift(margins=tuple(map(DayMargin, days, values)))
     calls = []
-    text = drifts_page(drifts(drift(), rising()), "Fleet", [series, None], lambda: calls.append(1))
+    text = drifts_page(drifts(shown, rising()), "Fleet", lambda: calls.append(1))
     page = Page(text)
     assert len(calls) == page.tags["svg"] == 2
     label = "least margin of ~safe_distance, r1, 2026-11-01 to 2026-11-10, turns on 2026-11-20"
@@ -393,7 +393,8 @@ def test_charts_of_drifts() -> None:
     ],
 )
 def test_odd_drifts_have_a_page(fields) -> None:
-    text = drifts_page(drifts(drift(**fields)), "Fleet", [DriftSeries(["2026-11-09"], [1.0])])
+    fields = {"margins": (DayMargin("2026-11-09", 1.0),), **fields}
+    text = drifts_page(drifts(drift(**fields)), "Fleet")
     assert Page(text).tags["svg"] == (fields.get("since") != "long ago")
 
 

@@ -24,7 +24,13 @@ from pytpc.base.wording import tidy
 from pytpc.diagnosis.fleet.group_medians import group_medians
 from pytpc.diagnosis.fleet.rows import Rows
 from pytpc.diagnosis.fleet.settings import same_numbers
-from pytpc.diagnosis.results.fleet import WHOLE_FLEET, FleetDrift, FleetDrifts, FleetPlace
+from pytpc.diagnosis.results.fleet import (
+    WHOLE_FLEET,
+    DayMargin,
+    FleetDrift,
+    FleetDrifts,
+    FleetPlace,
+)
 from pytpc.diagnosis.trend import Line, joint_trend, lines_of
 
 FEWEST_DAYS = 5
@@ -224,8 +230,23 @@ def _drift(rows: Rows, series: _Days, chance: float) -> _Found:
         earliest=None if zero is None or early is None else _text(early),
         latest=None if zero is None or late is None else _text(late),
         turned=series.turned,
+        margins=_margins(series, line),
     )
     return _Found(np.inf if zero is None else zero, drift)
+
+
+def _margins(series: _Days, line: Line) -> tuple[DayMargin, ...]:
+    """The median of each day; each robot's margins are moved to the level that the line has."""
+    begin, parts = series.days[0], series.parts
+    if len(parts) > 1:
+        levels = [float(np.median(one - line.slope * (day - begin))) for day, one in parts]
+        parts = tuple(
+            (day, one + line.start - level) for (day, one), level in zip(parts, levels, strict=True)
+        )
+    day, values = (np.concatenate(column) for column in zip(*parts, strict=True))
+    found = group_medians(day.astype(np.int64), values)
+    pairs = zip(found.group.tolist(), found.median.tolist(), strict=True)
+    return tuple(DayMargin(_text(one), median) for one, median in pairs)
 
 
 def _day_of_zero(line: Line, begin: float, span: tuple[float, float]) -> float | None:

@@ -175,6 +175,13 @@ class FleetRanking:
         return f"not sure: {first.parameter} is likeliest ({sure}); none of the parameters: {none}"
 
 
+class DayMargin(NamedTuple):
+    """A day, ``YYYY-MM-DD``, and the median of its margins."""
+
+    day: str
+    margin: float
+
+
 @dataclass(frozen=True, slots=True)
 class FleetDrift:
     """A margin that rises or falls from day to day.
@@ -193,6 +200,8 @@ class FleetDrift:
             is too far off to say.
         earliest, latest: the interval of that day; None is an open end.
         turned: how often it has turned since.
+        margins: of the days that have one, sorted. Of all robots together they are the medians over
+            the robots, each moved to their common level.
     """
 
     robot: str
@@ -211,6 +220,7 @@ class FleetDrift:
     earliest: str | None
     latest: str | None
     turned: int
+    margins: tuple[DayMargin, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

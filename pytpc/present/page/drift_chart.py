@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import date
-from typing import NamedTuple
 
 import numpy as np
 from markupsafe import Markup
@@ -15,20 +14,13 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from pytpc.base.columns import Floats
-from pytpc.diagnosis.results.fleet import FleetDrift
+from pytpc.diagnosis.results.fleet import DayMargin, FleetDrift
 from pytpc.present.page.plots import COLOUR, drawable, drawing, svg_of
 
 _AHEAD = 2.0
 _DAYS_AHEAD = 14.0
 _DOTS = 45
 _TICKS = 3
-
-
-class DriftSeries(NamedTuple):
-    """The margin of each day that has one; ``days`` are ``YYYY-MM-DD``, in any order."""
-
-    days: Sequence[str]
-    values: Sequence[float]
 
 
 @dataclass(frozen=True)
@@ -45,14 +37,11 @@ class DriftChart:
     between: bool
 
 
-def drift_chart(
-    drift: FleetDrift, series: DriftSeries | None, ident: str, label: str
-) -> DriftChart | None:
+def drift_chart(drift: FleetDrift, ident: str, label: str) -> DriftChart | None:
     """Draw a drift.
 
     Args:
-        drift: the trend, and when it turns.
-        series: the margins of the days; None: only the trend is drawn.
+        drift: the margins of the days, the trend, and when it turns.
         ident: prefix of all ids, unlike that of any other figure of the page.
         label: what the chart shows, for those who do not see it.
 
@@ -62,7 +51,7 @@ def drift_chart(
     since, until = day_number(drift.since), day_number(drift.until)
     if since is None or until is None:
         return None
-    days, values = _points(series)
+    days, values = _points(drift.margins)
     begin = min([since, *days.tolist()])
     seen = max([until, *days.tolist()])
     turn = day_number(drift.turns_on)
@@ -99,13 +88,11 @@ def day_number(day: str | None) -> int | None:
         return None
 
 
-def _points(series: DriftSeries | None) -> tuple[Floats, Floats]:
-    """float64[n] days in order and their margins, without those that are none."""
-    if series is None:
-        return np.empty(0), np.empty(0)
+def _points(margins: Sequence[DayMargin]) -> tuple[Floats, Floats]:
+    """float64[n] days and their margins, without those that are none."""
     pairs = [
         (number, value)
-        for day, value in zip(series.days, series.values, strict=True)
+        for day, value in margins
         for number in [day_number(day)]
         if number is not None and math.isfinite(value)
     ]
