@@ -12,12 +12,13 @@ import contextlib
 import io
 import json
 import re
+import secrets
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple, Protocol, TypeVar
 from urllib.parse import quote, unquote
 
 import pyarrow as pa
@@ -39,6 +40,9 @@ _PLACE = re.compile(r"robot=([^/]+)/day=([^/]+)/mission=([^/]+)/part\.parquet$")
 _BUILD = re.compile(r"[A-Za-z0-9_-]{1,64}")
 _LARGEST_BUILD = 1 << 28
 _TRIES = 5
+_RENAMES = frozenset({"sftp", "ssh"})
+"""Stores that show a file while it is written."""
+_MOST_REQUESTS = 64
 _SECRET = re.compile(r"(?<=://)[^/\s]*@")
 
 
@@ -317,12 +321,18 @@ class Fleet:
         """Wait for the answer in a thread that may be left behind."""
         answers: list[Answer] = []
         errors: list[BaseException] = []
+        silent = TpcError(f"the store does not answer within {self.patience_s:.0f} s", self._at)
+        turn = _turn_of(self._fs)
+        if not turn.acquire(timeout=self.patience_s):
+            raise silent
 
         def ask() -> None:
             try:
                 answers.append(request())
             except BaseException as error:
                 errors.append(error)
+            finally:
+                turn.release()
 
         thread = threading.Thread(target=ask, daemon=True, name="store")
         thread.start()
@@ -330,7 +340,7 @@ class Fleet:
         if errors:
             raise errors[0]
         if not answers:
-            raise TpcError(f"the store does not answer within {self.patience_s:.0f} s", self._at)
+            raise silent
         return answers[0]
 
     def _has(self, name: str) -> bool:
@@ -353,10 +363,21 @@ class Fleet:
 
     def _written(self, path: str, content: bytes) -> None:
         if not self._is_local:
-            # A store shows an object when it is whole.
+            folder, _, name = path.rpartition("/")
             with contextlib.suppress(NotImplementedError):
-                self._fs.makedirs(path.rpartition("/")[0], exist_ok=True)
-            self._fs.pipe_file(path, content)
+                self._fs.makedirs(folder, exist_ok=True)
+            if not _protocols(self._fs) & _RENAMES:
+                # Such a store shows an object when it is whole.
+                self._fs.pipe_file(path, content)
+                return
+            new = f"{folder}/.{name}.{secrets.token_hex(4)}"
+            try:
+                self._fs.pipe_file(new, content)
+                self._fs.mv(new, path)
+            except BaseException:
+                with contextlib.suppress(Exception):
+                    self._fs.rm_file(new)
+                raise
             return
         target = Path(path)
         staged = _staged(target, content)
@@ -403,6 +424,23 @@ def shown_url(url: str) -> str:
     ('sftp://host/fleet', 'fleet')
     """
     return _SECRET.sub("", url)
+
+
+class _Turn(Protocol):
+    """A lock, or what stands for one."""
+
+    def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
+        """See `threading.Lock`."""
+
+    def release(self) -> None:
+        """See `threading.Lock`."""
+
+
+def _turn_of(fs: Any) -> _Turn:  # noqa: ANN401 - fsspec has no types
+    """What a request to a store waits for: not all libraries can have two at a time."""
+    many = threading.BoundedSemaphore(_MOST_REQUESTS) if fs.async_impl else threading.Lock()
+    found: _Turn = fs.__dict__.setdefault("_pytpc_turn", many)
+    return found
 
 
 def _protocols(fs: Any) -> set[str]:  # noqa: ANN401 - fsspec has no types

@@ -282,3 +282,54 @@ def test_passwords_are_not_printed():
         assert done.exit_code == 1
         assert "secret" not in done.output
         assert "127.0.0.1:9/fleet" in done.stderr or "nosuch://host/fleet: " in done.stderr
+
+
+class _Alone(MemoryFileSystem):
+    """A store that two threads must not ask at once, and that shows a file while it is written."""
+
+    protocol = ("alone", "sftp")
+    asked, together = 0, 0
+    names: ClassVar[list[str]] = []
+    both = threading.Event()
+
+    def cat_file(self, path, *args, **kwargs):
+        own = type(self)
+        own.asked += 1
+        if own.asked > 1:
+            own.together += 1
+            own.both.set()
+        own.both.wait(0.2)
+        own.asked -= 1
+        return super().cat_file(path, *args, **kwargs)
+
+    def pipe_file(self, path, *args, **kwargs):
+        type(self).names.append(path)
+        return super().pipe_file(path, *args, **kwargs)
+
+
+@pytest.fixture
+def alone() -> Iterator[type[_Alone]]:
+    fsspec.register_implementation("alone", _Alone, clobber=True)
+    _Alone.asked = _Alone.together = 0
+    _Alone.names.clear()
+    _Alone.both.clear()
+    MemoryFileSystem.store.clear()
+    yield _Alone
+    MemoryFileSystem.store.clear()
+
+
+def test_a_store_that_takes_one_request_at_a_time(alone: type[_Alone]) -> None:
+    fleet = Fleet("alone://some/fleet")
+    fleet.begin()
+    threads = [threading.Thread(target=fleet.check) for _ in range(4)]
+    for one in threads:
+        one.start()
+    for one in threads:
+        one.join()
+    assert alone.together == 0
+
+
+def test_a_store_that_shows_what_is_half_written(alone: type[_Alone]) -> None:
+    Fleet("alone://some/fleet").begin()
+    assert [name.rpartition("/")[2][:12] for name in alone.names] == [".fleet.json."]
+    assert [name.rpartition("/")[2] for name in alone.store] == ["fleet.json"]
