@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import dask
 import pytest
 from recorded_fleet import dies, dies_once, fails, joined, square
 
@@ -43,7 +44,8 @@ def test_a_worker_that_is_killed_changes_nothing(tmp_path: Path):
 
 def test_an_item_at_which_workers_die_again_and_again():
     """The others have their results, also those that waited on these workers."""
-    with engine("local", 2) as own:
+    once = dask.config.set({"distributed.scheduler.allowed-failures": 0})
+    with once, engine("local", 2) as own:
         found = own.map(dies, list(range(10)), lost=lambda number: [-number])
         assert found == [[-5 if n == 5 else n * n] for n in range(10)]
         with pytest.raises(TpcError, match="workers died again and again"):
