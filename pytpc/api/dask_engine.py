@@ -27,7 +27,10 @@ Progress = Callable[[int, int], None]
 LOCAL = "local"
 MEMORY = "2GB"
 """What a worker may have: near it, its tasks wait; beyond it, it is started again."""
-DIED = f"worker processes died while they read it; it may not fit into their memory ({MEMORY})"
+DIED = (
+    "worker processes died while they read it; it may not fit into their memory"
+    f" (of each {MEMORY} with --cluster local)"
+)
 """What to say of something at which they died."""
 _JOINED = 8
 """So many results are joined at once."""
