@@ -13,6 +13,7 @@ import asyncio
 import itertools
 import logging
 import os
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
@@ -27,11 +28,16 @@ Progress = Callable[[int, int], None]
 LOCAL = "local"
 MEMORY = "2GB"
 """What a worker may have: near it, its tasks wait; beyond it, it is started again."""
-DIED = f"worker processes died while they read it; it may not fit into their memory ({MEMORY})"
+DIED = (
+    "worker processes died while they read it; it may not fit into their memory"
+    f" (of each {MEMORY} with --cluster local)"
+)
 """What to say of something at which they died."""
 _JOINED = 8
 """So many results are joined at once."""
 _ANSWERS_S = 20
+_STARTS_S = 300.0
+"""After so long without any worker process on this machine there will be none: it takes seconds."""
 _AT_START = "pytpc.api.dask_worker"
 
 
@@ -169,16 +175,27 @@ class Engine:
         return leaves
 
     def _wait_for(self, wanted: Sequence[Any]) -> None:
-        """Wait in turns, between which a signal is heard."""
+        """Wait in turns, between which a signal is heard.
+
+        Raises:
+            TpcError: on this machine no worker process starts any more.
+        """
         from distributed import wait  # noqa: PLC0415 - it takes a second
 
-        cluster = self.client.cluster
+        cluster, seen_s = self.client.cluster, time.monotonic()
         while not all(one.done() for one in wanted):
             with suppress(TimeoutError, asyncio.TimeoutError):
                 wait(wanted, timeout=1)
+            if cluster is None:
+                continue
             # Dask gives up a worker process that dies while it starts.
-            if cluster is not None and len(cluster.workers) < self.workers:
+            if len(cluster.workers) < self.workers:
                 cluster.scale(self.workers)
+            if cluster.scheduler_info["workers"]:
+                seen_s = time.monotonic()
+            elif time.monotonic() - seen_s > _STARTS_S:
+                what = "no worker process starts any more; give fewer --workers, or no --cluster"
+                raise TpcError(what)
 
 
 def _is_killed(leaf: Any) -> bool:  # noqa: ANN401 - a Future of Dask

@@ -61,5 +61,12 @@ def dies(number: int) -> list[int]:
     return square(number)
 
 
+def dies_for_good(died: Path) -> list[int]:
+    """The task kills its worker, and says so to those that start after it."""
+    died.touch()
+    os.kill(os.getpid(), signal.SIGKILL)
+    return []
+
+
 def fails(number: int) -> list[int]:
     raise ZeroDivisionError(f"{number} / 0")

@@ -64,6 +64,15 @@ def test_a_value_of_one_bad_mission_among_many_is_no_cause(wrong: dict[int, floa
     assert [name for name, *_ in causes(rows)] == ["/nav/p0"]
 
 
+def test_a_robot_that_never_went_right() -> None:
+    """r3 has the usual p0, with which its sisters went right: p0 explains none of its missions."""
+    rows = fleet(*[{0: 0.9}] * 6, *[{1: 0.1}] * 2, good=24)
+    for n in range(4):
+        flight = Flight(f"w{n}", "r3", 20 + n, "bad")
+        rows += [digest(flight, each, 0.1 if each == 1 else 0.5) for each in range(6)]
+    assert causes(rows) == [("/nav/p0", 6, ROBOTS), ("/nav/p1", 6, ("r0", "r1", "r3"))]
+
+
 def test_what_no_comparison_reports_is_no_cause() -> None:
     rows = fleet(*[{}] * 4, *[{0: 0.9}] * 6, good=24)
     gain = {n: 2 if 24 <= n < 28 else 1 for n in range(34)}

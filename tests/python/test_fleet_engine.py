@@ -9,7 +9,7 @@ from pathlib import Path
 
 import dask
 import pytest
-from recorded_fleet import dies, dies_once, fails, joined, square
+from recorded_fleet import dies, dies_for_good, dies_once, fails, joined, square
 
 from patience import PATIENCE_S, wait_for
 from pytpc.api.dask_engine import engine
@@ -50,6 +50,18 @@ def test_an_item_at_which_workers_die_again_and_again():
         assert found == [[-5 if n == 5 else n * n] for n in range(10)]
         with pytest.raises(TpcError, match="workers died again and again"):
             own.map(dies, [5])
+
+
+def test_no_worker_starts_any_more(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("pytpc.api.dask_engine._STARTS_S", 1.0)
+    died, preload = tmp_path / "died", tmp_path / "preload.py"
+    preload.write_text(f"import os\nos.path.exists({str(died)!r}) and os._exit(1)\n")
+    with dask.config.set({"distributed.worker.preload": [str(preload)]}), engine("local", 1) as own:
+        assert own.map(square, [3]) == [[9]]
+        # It is in this list as long as it lives.
+        assert own.client.cluster.scheduler_info["workers"]
+        with pytest.raises(TpcError, match="no worker process starts any more; give fewer"):
+            own.map(dies_for_good, [died], lost=lambda _: [])
 
 
 def test_a_scheduler_that_runs_already(tmp_path: Path):

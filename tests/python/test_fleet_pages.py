@@ -144,6 +144,16 @@ def test_several_causes_are_told_in_every_output() -> None:
     assert "and 8 more" in words
 
 
+def test_the_only_cause_need_not_be_the_likeliest_single_suspect() -> None:
+    """Every output blames the same parameter."""
+    found = replace(
+        ranking(suspect(1, "~a", 0.85), suspect(2, "~b", 0.1)),
+        causes=(FleetCause("~b", 0.9, 3, ("r1",)),),
+    )
+    assert (found.accused, found.is_mixed) == ("~b", True)
+    assert found.text == "blame ~b, 90 %, for 3 of 4 bad missions"
+
+
 def test_one_cause_has_no_table_of_its_own() -> None:
     one = replace(BLAMED, causes=(FleetCause("~safe_distance", 0.9, 3, ("r1",)),))
     assert "Causes" not in printed(print_ranking, one)

@@ -46,17 +46,24 @@ class Held(NamedTuple):
 def gone_wrong_with(settings: Settings, verdicts: Verdicts, parameter: int) -> Int64s:
     """int64[f]: the bad missions with a value with which their robot mostly went wrong.
 
-    At least four of five: a mission that goes wrong unseen counts as good.
+    At least four of five: a mission that goes wrong unseen counts as good. A robot that went right
+    with no other value says nothing of it by itself; there the missions of the whole fleet count.
     """
     own = settings.entries(parameter)
-    mission, code = settings.mission[own].astype(np.int64), settings.value[own]
-    pair = code.astype(np.int64) * len(verdicts.robots) + verdicts.robot[mission]
-    bad, good = (
-        np.bincount(pair[which[mission]], minlength=int(pair.max(initial=0)) + 1)
-        for which in (verdicts.bad, verdicts.good)
-    )
-    mostly = bad >= MOSTLY * good
-    return np.asarray(mission[verdicts.bad[mission] & mostly[pair]])
+    mission, value = settings.mission[own].astype(np.int64), settings.value[own].astype(np.int64)
+    robot = verdicts.robot[mission].astype(np.int64)
+    is_bad, is_good = verdicts.bad[mission], verdicts.good[mission]
+    pair = value * len(verdicts.robots) + robot
+
+    def counts(codes: Int64s) -> tuple[Int64s, Int64s]:
+        """Of each entry the bad and the good missions with its code."""
+        bad, good = (np.bincount(codes, rows)[codes].astype(np.int64) for rows in (is_bad, is_good))
+        return bad, good
+
+    (bad, good), (_, right), fleet = counts(pair), counts(robot), counts(value)
+    alone = right == good
+    bad, good = np.where(alone, fleet, (bad, good))
+    return np.asarray(mission[is_bad & (bad >= MOSTLY * good)])
 
 
 def values_in(settings: Settings, verdicts: Verdicts, parameter: int) -> Held:

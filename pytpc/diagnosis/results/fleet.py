@@ -146,10 +146,11 @@ class FleetRanking:
 
     @property
     def is_mixed(self) -> bool:
-        """Whether there are several causes, or one that stands out only beside others."""
-        return len(self.causes) > 1 or (
-            bool(self.causes) and max(one.probability for one in self.suspects) < SURE
-        )
+        """Whether there are several causes, or one that is no sure suspect of all bad missions."""
+        if len(self.causes) != 1:
+            return bool(self.causes)
+        first = self.suspects[0]
+        return first.parameter != self.causes[0].parameter or first.probability < SURE
 
     @property
     def text(self) -> str:
