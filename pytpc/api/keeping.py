@@ -41,6 +41,7 @@ from pytpc.ros.source import Source
 # yet to each new listener, and nodes of ROS 2 their values.
 _HEARD_S = 2.0
 _TURN_S = 0.1
+_OUTLIVES_S = 5.0
 # Marks that go on coming make a recording no later than this.
 _LONGEST_S = 60.0
 _LISTED = 3
@@ -471,4 +472,12 @@ def _remove_left(parent: Path) -> None:
             if time.time() - left.stat().st_mtime < _NEW_S:
                 continue
             with alone_in(left, _LOCK):
-                shutil.rmtree(left, ignore_errors=True)
+                _remove(left)
+
+
+def _remove(left: Path) -> None:
+    """Remove a folder to which processes that outlive a killed one for a moment may still write."""
+    until = time.monotonic() + _OUTLIVES_S
+    while left.exists() and time.monotonic() < until:
+        shutil.rmtree(left, ignore_errors=True)
+        time.sleep(_TURN_S if left.exists() else 0.0)
