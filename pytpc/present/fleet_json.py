@@ -7,6 +7,7 @@ from dataclasses import fields, is_dataclass
 
 from pytpc.diagnosis.results.fleet import (
     WHOLE_FLEET,
+    DayMargin,
     FleetDrift,
     FleetDrifts,
     FleetOutliers,
@@ -103,8 +104,8 @@ def _fields(one: object) -> Json:
 
 def _plain(value: object) -> object:
     """A value of an answer, with what is inside; a number that JSON lacks is null."""
-    if isinstance(value, FleetPlace):
-        return value._asdict()
+    if isinstance(value, FleetPlace | DayMargin):
+        return {name: without_nan(one) for name, one in value._asdict().items()}
     if isinstance(value, tuple):
         return [_plain(one) for one in value]
     return _fields(value) if is_dataclass(value) else without_nan(value)

@@ -563,6 +563,14 @@ def test_the_columns_of_outliers() -> None:
     assert other["usual"] is other["chance"] is other["place"] is None
 
 
+def test_the_margins_of_the_days_are_in_json_and_parquet(tmp_path) -> None:
+    found = drifts(drift(margins=(DayMargin("2026-11-01", 0.4), DayMargin("2026-11-02", 0.3))))
+    days = [{"day": "2026-11-01", "margin": 0.4}, {"day": "2026-11-02", "margin": 0.3}]
+    assert drifts_json(found)["drifts"][0]["margins"] == days
+    write_table(drifts_table(found), tmp_path / "drifts.parquet")
+    assert pq.read_table(tmp_path / "drifts.parquet")["margins"].to_pylist() == [days]
+
+
 def test_numbers_that_are_none_are_null() -> None:
     (row,) = found_table([(mission(), [replace(turn(), value=math.nan, margin=None)])]).to_pylist()
     assert row["turned"][0]["value"] is row["turned"][0]["margin"] is None
