@@ -22,12 +22,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 import pyarrow as pa
 
-from pytpc.base.columns import Bools, Floats, Int64s, frozen
+from pytpc.base.columns import Bools, Floats, Int64s
 from pytpc.base.errors import InputError
 from pytpc.base.wording import listed, many
 from pytpc.diagnosis.fleet.behaviour_evidence import MEASURES, Differing, differing
@@ -72,11 +73,15 @@ def rank_fleet(
         raise InputError("no mission is bad: add missions with marks, or say which are bad")
     settings = Settings.of(rows, values)
 
-    def judged(bad: Bools) -> _Scored:
-        own = replace(rows, bad=frozen(bad))
+    @cache
+    def judged(bad: bytes) -> _Scored:
+        own = replace(rows, bad=np.frombuffer(bad, np.bool_))
         return _scored(own, settings, joined(own, settings.parameters, diagnoses))
 
-    scored = judged(rows.bad)
+    def probabilities(bad: Bools) -> Floats:
+        return judged(bad.tobytes()).probability
+
+    scored = judged(rows.bad.tobytes())
     return FleetRanking(
         suspects=_suspects(rows, settings, scored),
         none=scored.none,
@@ -85,9 +90,7 @@ def rank_fleet(
         robots=len({*rows.robot[rows.bad | rows.good].tolist()}),
         diagnosed=scored.diagnoses.missions,
         notes=_notes(rows, scored.diagnoses),
-        causes=causes_in(
-            settings, Verdicts.of(rows), len(rows.parameters), lambda bad: judged(bad).probability
-        ),
+        causes=causes_in(settings, Verdicts.of(rows), len(rows.parameters), probabilities),
     )
 
 
