@@ -90,11 +90,11 @@ class Condenser:
             kept = self._condense(block)
         else:
             hot = self._hot[block.key]
-            rows = np.flatnonzero(~hot)
-            if rows.size < hot.size:
-                held = np.flatnonzero(hot)
-                rows = np.sort(np.append(rows, held[self._condense(_part(block, held))]))
-            kept = rows
+            rows = np.flatnonzero(hot)
+            whole = ~hot
+            if rows.size:
+                whole[self._condense(block, rows)] = True
+            kept = np.flatnonzero(whole)
         self._gathering.add_events(self._channel, self._node, _part(block, kept))
         if self._held_rows >= _HELD:
             self._join()
@@ -133,12 +133,16 @@ class Condenser:
         )
         return note
 
-    def _condense(self, block: ReportColumns) -> Int64s:
-        """Which of the reports are kept as events; the others are only in a summary."""
-        order = order_of(block.key)
-        key, time_ns, result = block.key[order], block.time_ns[order], block.result[order]
-        bounds, in_turn = self._periods(block.time_ns)
-        period = in_turn[order]
+    def _condense(self, block: ReportColumns, some: Int64s | None = None) -> Int64s:
+        """Which of the reports, or of some, are kept as events; the others are in a summary."""
+        key, time_ns = block.key, block.time_ns
+        if some is not None:
+            key, time_ns = key[some], time_ns[some]
+        order = order_of(key)
+        bounds, in_turn = self._periods(time_ns)
+        key, time_ns, period = key[order], time_ns[order], in_turn[order]
+        rows = order if some is None else some[order]
+        result = block.result[rows]
         new_key = np.concatenate([[True], key[1:] != key[:-1]])
         starts = np.flatnonzero(new_key | np.concatenate([[True], period[1:] != period[:-1]]))
         heads = np.flatnonzero(new_key)
@@ -150,7 +154,7 @@ class Condenser:
         flop = (before != result) & (before >= 0)
         flops = np.add.reduceat(flop, starts, dtype=np.int64)
         kept = self._some(flop, flops, starts) | (before < 0)
-        partial = _summaries(block, order, starts)
+        partial = _summaries(block, rows, starts)
         partial["key"], partial["node"] = key[starts], self._node
         partial["channel"] = self._channel.code
         partial["flops"] = flops
@@ -158,8 +162,8 @@ class Condenser:
         partial["end_ns"] = np.maximum.reduceat(time_ns, starts)
         self._held.append((partial, bounds[period[starts]]))
         self._held_rows += starts.size
-        self._condensed += key.size
-        found: Int64s = np.sort(order[kept])
+        self._condensed += rows.size
+        found: Int64s = np.sort(rows[kept])
         return found
 
     def _periods(self, time_ns: Int64s) -> tuple[Int64s, Int64s]:
