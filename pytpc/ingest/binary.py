@@ -178,14 +178,13 @@ class _TpcReader:
             loaded = self._file.load(places)
             records = loaded[:, layout.CHUNK_HEADER_BYTES :].view(RECORD)
             first = thread.firsts[thread.read]
-            is_last = thread.read + len(places) == len(thread.chunks)
             whole = self._whole(thread, loaded, places)
             if whole is not None:
                 thread.expected = first + layout.RECORDS_OF_CHUNK * len(places)
                 thread.block = whole
                 thread.read += len(places)
             else:
-                thread.block = self._one_by_one(thread, loaded, records, places, is_last)
+                thread.block = self._one_by_one(thread, loaded, records, places)
             self._progress(len(places))
             if len(thread.block):
                 return True
@@ -223,7 +222,6 @@ class _TpcReader:
         loaded: Bytes,
         records: npt.NDArray[np.void],
         places: list[int],
-        is_last: bool,
     ) -> RecordBlock:
         """Chunks, at least one of which is not full or holds other records than reports."""
         blocks = []
