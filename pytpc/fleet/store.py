@@ -18,7 +18,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple, Protocol, TypeVar
+from typing import Any, NamedTuple, TypeVar
 from urllib.parse import quote, unquote
 
 import pyarrow as pa
@@ -426,20 +426,10 @@ def shown_url(url: str) -> str:
     return _SECRET.sub("", url)
 
 
-class _Turn(Protocol):
-    """A lock, or what stands for one."""
-
-    def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
-        """See `threading.Lock`."""
-
-    def release(self) -> None:
-        """See `threading.Lock`."""
-
-
-def _turn_of(fs: Any) -> _Turn:  # noqa: ANN401 - fsspec has no types
+def _turn_of(fs: Any) -> threading.BoundedSemaphore:  # noqa: ANN401 - fsspec has no types
     """What a request to a store waits for: not all libraries can have two at a time."""
-    many = threading.BoundedSemaphore(_MOST_REQUESTS) if fs.async_impl else threading.Lock()
-    found: _Turn = fs.__dict__.setdefault("_pytpc_turn", many)
+    many = threading.BoundedSemaphore(_MOST_REQUESTS if fs.async_impl else 1)
+    found: threading.BoundedSemaphore = fs.__dict__.setdefault("_pytpc_turn", many)
     return found
 
 
