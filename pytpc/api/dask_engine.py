@@ -146,23 +146,21 @@ class Engine:
         """``map`` on a cluster."""
         leaves = self._submitted(task, items, on_progress)
         self._wait_for(leaves)
-        killed = [n for n, leaf in enumerate(leaves) if lost is not None and _is_killed(leaf)]
-        found = dict(enumerate(leaves))
-        for number in killed:
-            del found[number]
+        if lost is None:
+            made: list[Result] = self.client.gather(leaves)
+            return made
+        killed = [number for number, leaf in enumerate(leaves) if _is_killed(leaf)]
         # The results are fetched before another worker dies with them.
-        made: dict[int, Result] = dict(
-            zip(found, self.client.gather([*found.values()]), strict=True)
-        )
-        del leaves, found
+        made = self.client.gather([one for n, one in enumerate(leaves) if n not in killed])
+        del leaves
         for number in killed:
-            assert lost is not None
-            # Alone: it may have waited on workers that died at another one.
-            again = self._submitted(task, [items[number]], None)
-            self._wait_for(again)
             item = items[number]
-            made[number] = lost(item) if _is_killed(again[0]) else self.client.gather(again)[0]
-        return [made[number] for number in range(len(items))]
+            # Alone: it may have waited on workers that died at another one.
+            again = self._submitted(task, [item], None)
+            self._wait_for(again)
+            found = lost(item) if _is_killed(again[0]) else self.client.gather(again)[0]
+            made.insert(number, found)
+        return made
 
     def _submitted(
         self, task: Callable[[Any], Any], items: Sequence[Any], on_progress: Progress | None
