@@ -100,9 +100,13 @@ def lines_of(series: Sequence[tuple[Floats, Floats]]) -> tuple[Line, Line, Line]
     chosen = (float(np.median(slopes)), float(slopes[low]), float(slopes[high]))
     found = []
     for slope in chosen:
-        levels = [float(np.median(values - slope * times)) for times, values in series]
-        found.append(Line(slope, float(np.median(levels))))
+        found.append(Line(slope, float(np.median(levels_of(series, slope)))))
     return found[0], found[1], found[2]
+
+
+def levels_of(series: Sequence[tuple[Floats, Floats]], slope: float) -> Floats:
+    """float64[n]: the median of each series at time 0, without this slope; see `joint_trend`."""
+    return np.array([np.median(values - slope * times) for times, values in series])
 
 
 def _pairs_of(times: Floats, values: Floats) -> tuple[Floats, Floats]:

@@ -10,7 +10,7 @@ off, does not count there.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from datetime import date
 from math import ceil
@@ -31,7 +31,7 @@ from pytpc.diagnosis.results.fleet import (
     FleetDrifts,
     FleetPlace,
 )
-from pytpc.diagnosis.trend import Line, joint_trend, lines_of
+from pytpc.diagnosis.trend import Line, joint_trend, levels_of, lines_of
 
 FEWEST_DAYS = 5
 """Fewer days have no trend."""
@@ -208,7 +208,8 @@ def _by_day(group: Int64s, day: Int64s, values: Floats) -> Iterator[tuple[int, F
 def _drift(rows: Rows, series: _Days, chance: float) -> _Found:
     days = series.days
     begin, end = float(days[0]), float(days[-1])
-    line, steepest, flattest = lines_of([(day - begin, one) for day, one in series.parts])
+    parts = [(day - begin, one) for day, one in series.parts]
+    line, steepest, flattest = lines_of(parts)
     furthest = end + AHEAD * (end - begin)
     zero = _day_of_zero(line, begin, (end, furthest))
     early, late = (_day_of_zero(one, begin, (end, furthest)) for one in (steepest, flattest))
@@ -230,23 +231,24 @@ def _drift(rows: Rows, series: _Days, chance: float) -> _Found:
         earliest=None if zero is None or early is None else _text(early),
         latest=None if zero is None or late is None else _text(late),
         turned=series.turned,
-        margins=_margins(series, line),
+        margins=_margins(parts, line, begin),
     )
     return _Found(np.inf if zero is None else zero, drift)
 
 
-def _margins(series: _Days, line: Line) -> tuple[DayMargin, ...]:
+def _margins(
+    parts: Sequence[tuple[Floats, Floats]], line: Line, begin: float
+) -> tuple[DayMargin, ...]:
     """The median of each day; each robot's margins are moved to the level that the line has."""
-    begin, parts = series.days[0], series.parts
     if len(parts) > 1:
-        levels = [float(np.median(one - line.slope * (day - begin))) for day, one in parts]
-        parts = tuple(
+        levels = levels_of(parts, line.slope).tolist()
+        parts = [
             (day, one + line.start - level) for (day, one), level in zip(parts, levels, strict=True)
-        )
+        ]
     day, values = (np.concatenate(column) for column in zip(*parts, strict=True))
     found = group_medians(day.astype(np.int64), values)
     pairs = zip(found.group.tolist(), found.median.tolist(), strict=True)
-    return tuple(DayMargin(_text(one), median) for one, median in pairs)
+    return tuple(DayMargin(_text(begin + one), median) for one, median in pairs)
 
 
 def _day_of_zero(line: Line, begin: float, span: tuple[float, float]) -> float | None:
