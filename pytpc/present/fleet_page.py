@@ -148,8 +148,7 @@ def _cause_view(one: FleetCause) -> CauseView:
     return CauseView(
         _cut(CauseTexts.of(one)),
         Bar(0.0, 100 * one.probability),
-        _shorts(one.robots[:_ROBOTS_SHOWN]),
-        max(0, len(one.robots) - _ROBOTS_SHOWN),
+        *_robots(one.robots),
     )
 
 
@@ -164,6 +163,7 @@ def _suspect_view(one: FleetSuspect, ident: str, longest: float) -> SuspectView:
     widest = max((abs(margin) for _, margin in margins if margin is not None), default=0.0)
     texts = _cut(SuspectTexts.of(one))
     told = {"bad": texts.margin_bad, "good": texts.margin_good}
+    robots, more_robots = _robots(one.robots)
     return SuspectView(
         ident=ident,
         texts=texts,
@@ -179,8 +179,8 @@ def _suspect_view(one: FleetSuspect, ident: str, longest: float) -> SuspectView:
             if margin is not None
         ],
         unit=one.unit,
-        robots=_shorts(one.robots[:_ROBOTS_SHOWN]),
-        more_robots=max(0, len(one.robots) - _ROBOTS_SHOWN),
+        robots=robots,
+        more_robots=more_robots,
     )
 
 
@@ -197,9 +197,13 @@ def _value_view(value: ValueInMissions, most: int) -> ValueView:
         value.fresh,
         _bar(value.bad, most),
         _bar(value.good, most),
-        _shorts(value.robots[:_ROBOTS_SHOWN]),
-        max(0, len(value.robots) - _ROBOTS_SHOWN),
+        *_robots(value.robots),
     )
+
+
+def _robots(robots: Sequence[str]) -> tuple[tuple[str, ...], int]:
+    """The first ones, and how many more there are."""
+    return _shorts(robots[:_ROBOTS_SHOWN]), max(0, len(robots) - _ROBOTS_SHOWN)
 
 
 def _bar(value: float, most: float) -> Bar:
