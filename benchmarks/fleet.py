@@ -117,12 +117,14 @@ def long_missions(folder: Path) -> None:
 def right(world: World, answer: dict[str, Any]) -> None:
     """How many of the parameters that are wrong come first, and which causes are named."""
     wrong = {parameter_of(one.decision).rpartition("/")[2] for one in world.culprits}
-    first = [one["parameter"].strip("~/").rpartition("/")[2] for one in answer["suspects"]]
+    first, causes = (
+        [one["parameter"].strip("~/").rpartition("/")[2] for one in answer[what]]
+        for what in ("suspects", "causes")
+    )
     found = sum(name in wrong for name in first[: len(wrong)])
     is_first = bool(first) and first[0] in wrong
     target = f"first_of_{len(wrong)}"
     figure(TOPIC, "rank_wrong_ones_first", found, unit="parameters", target=target, hit=is_first)
-    causes = [one["parameter"].strip("~/").rpartition("/")[2] for one in answer["causes"]]
     show("rank_causes_right", len({*causes} & wrong), "parameters")
     false = len({*causes} - wrong)
     figure(TOPIC, "rank_causes_false", false, unit="parameters", target="0", hit=not false)

@@ -194,13 +194,13 @@ def _names(url: str, patience_s: float, here: str, there: str) -> dict[str, str]
 
 def _joined(parts: list[Digests]) -> Digests:
     return Digests(
-        _one([_ROWS.empty_table(), *(part.rows for part in parts)]),
-        _one([_VALUES.empty_table(), *(part.values for part in parts)]),
+        _in_one_chunk([_ROWS.empty_table(), *(part.rows for part in parts)]),
+        _in_one_chunk([_VALUES.empty_table(), *(part.values for part in parts)]),
         tuple(one for part in parts for one in part.unread),
     )
 
 
-def _one(tables: Sequence[pa.Table]) -> pa.Table:
+def _in_one_chunk(tables: Sequence[pa.Table]) -> pa.Table:
     """One table; on the way to another process each chunk has all words with it."""
     return pa.concat_tables(tables).unify_dictionaries().combine_chunks()
 

@@ -480,4 +480,4 @@ def _remove(left: Path) -> None:
     until = time.monotonic() + _OUTLIVES_S
     while left.exists() and time.monotonic() < until:
         shutil.rmtree(left, ignore_errors=True)
-        time.sleep(_TURN_S if left.exists() else 0.0)
+        time.sleep(_TURN_S)

@@ -84,12 +84,12 @@ def _decision(one: OtherDecision) -> Json:
 def found_json(found: Sequence[Found]) -> list[Json]:
     """The missions, each with its turns."""
     return [
-        {**mission_json(mission), "turned": [_fields(turn) for turn in turns]}
+        {**_mission(mission), "turned": [_fields(turn) for turn in turns]}
         for mission, turns in found
     ]
 
 
-def mission_json(one: FoundMission) -> Json:
+def _mission(one: FoundMission) -> Json:
     """A mission without its turns."""
     found = _fields(one)
     bad = found.pop("is_bad")
