@@ -24,7 +24,7 @@ from urllib.parse import quote, unquote
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from pytpc.base.atomic import stage_beside
+from pytpc.base.atomic import leftovers, stage_beside
 from pytpc.base.errors import InputError, TpcError
 from pytpc.base.wording import plain
 from pytpc.fleet.tables import COMMIT, SCHEMA, SCHEMAS, TABLES, Table
@@ -227,6 +227,8 @@ class Fleet:
         path = f"{_BUILDS}/{name}.json"
         if not self._has(path):
             self._put(path, content)
+        elif self._is_local:
+            _tidy(Path(self._at_store(path)))
 
     def build(self, name: str) -> bytes:
         """The static information of a build.
@@ -379,18 +381,14 @@ class Fleet:
                     self._fs.rm_file(new)
                 raise
             return
-        target = Path(path)
-        staged = _staged(target, content)
-        try:
-            staged.replace(target)
-        finally:
-            staged.unlink(missing_ok=True)
+        _write(Path(path), content)
 
     def _remove(self, name: str) -> None:
         path = self._at_store(name)
         with contextlib.suppress(FileNotFoundError):
             self._asked(lambda: self._fs.rm_file(path))
         if self._is_local:
+            _tidy(Path(path))
             # Up to the table's own folder, which others may be writing to.
             for folder in list(Path(path).parents)[:3]:
                 with contextlib.suppress(OSError):
@@ -437,16 +435,27 @@ def _protocols(fs: Any) -> set[str]:  # noqa: ANN401 - fsspec has no types
     return {fs.protocol} if isinstance(fs.protocol, str) else set(fs.protocol)
 
 
-def _staged(target: Path, content: bytes) -> Path:
-    """A new file beside one, in a folder that somebody may remove while it is empty."""
+def _write(target: Path, content: bytes) -> None:
+    """Write a file, in a folder from which others may remove what is no whole file."""
     for left in reversed(range(_TRIES)):
         try:
             target.parent.mkdir(parents=True, exist_ok=True)
-            return stage_beside(target, content, mode=0o666)
+            staged = stage_beside(target, content, mode=0o666)
+            try:
+                staged.replace(target)
+            finally:
+                staged.unlink(missing_ok=True)
+            break
         except FileNotFoundError:
             if not left:
                 raise
-    raise AssertionError("not reached")
+    _tidy(target)
+
+
+def _tidy(target: Path) -> None:
+    """Remove what somebody who was killed left of a file; who still writes it begins again."""
+    for path in leftovers(target):
+        path.unlink(missing_ok=True)
 
 
 def _file(table: str, place: Place) -> str:

@@ -149,6 +149,50 @@ def test_a_folder_that_somebody_removes_while_it_is_empty(
     assert fleet.places() == [place]
 
 
+# Killed between a file and its name: nobody else would ever remove it.
+@pytest.mark.parametrize("again", ["write", "drop"])
+def test_what_one_who_was_killed_left_is_removed(fleet: Fleet, again: str):
+    (place,) = fleet.places()
+    tables = tables_of(fleet, place)
+    root = Path(fleet.url)
+    clean = {path for path in root.rglob("*") if path.is_file()}
+    fleet.drop(place)
+    for table in TABLES:
+        folder = root / table / place.folder
+        folder.mkdir(parents=True)
+        (folder / ".part.parquet.tpc-0123abcd").write_bytes(b"PAR1")
+    (build,) = (root / "builds").iterdir()
+    build.with_name(f".{build.name}.tpc-0123abcd").write_bytes(b"{")
+    fleet.put_build(build.stem, build.read_bytes())
+    if again == "write":
+        fleet.write(place, tables)
+        assert {path for path in root.rglob("*") if path.is_file()} == clean
+    else:
+        fleet.drop(place)
+        left = {path for path in root.rglob("*") if path.is_file()}
+        assert left == {root / "fleet.json", build}
+        assert not any(path.name.startswith("mission=") for path in root.rglob("*"))
+
+
+# Who adds the same mission at once takes a file that is half written for one of the dead.
+def test_a_file_that_is_taken_away_is_written_again(fleet: Fleet, monkeypatch: pytest.MonkeyPatch):
+    (place,) = fleet.places()
+    tables = tables_of(fleet, place)
+    fleet.drop(place)
+    real, taken = Path.replace, []
+
+    def replace(self: Path, target: Path) -> Path:
+        if target not in taken:
+            taken.append(target)
+            self.unlink()
+        return real(self, target)
+
+    monkeypatch.setattr(Path, "replace", replace)
+    fleet.write(place, tables)
+    assert taken
+    assert tables_of(fleet, place) == tables
+
+
 def test_two_who_begin_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     fleet = Fleet(str(tmp_path / "fleet"))
     real, asked = Fleet._has, []
