@@ -18,27 +18,39 @@ opt = os.path.join(config.tpc_tools, "opt")
 lld = os.path.join(config.tpc_tools, "ld.lld")
 load = f"-load={plugin} -load-pass-plugin={plugin}"
 
+clang = os.path.join(config.tpc_tools, "clang")
+flags = f"-g -flto=full -fpass-plugin={config.tpc_defer} -grecord-command-line"
+# The rest of a command.
+rest = "[^&|;]*"
+
+
+def after(command, headers):
+    """The same compiler after most headers; without them where nobody has built check-lit yet."""
+    found = os.path.join(config.tpc_obj_root, "headers", f"{headers}.pch")
+    return f"{command} -include-pch {found}" if os.path.exists(found) else command
+
+
+def with_headers(name, command, levels):
+    """``after`` the headers (CMakeLists.txt), for commands whose options allow it."""
+    for level, option in levels.items():
+        fits = f"{name}(?!{rest} -(?:std|fsanitize)=)(?={rest}{option})"
+        yield f"{fits}(?={rest} -fPIC)", after(command, f"{level}-pic")
+        yield fits, after(command, level)
+    yield name, command
+
+
+compile_ = f"{clangxx} -std=c++17 {flags} -isystem {inputs}/include -c"
+native = f"{clangxx} -std=c++17 -O1 -isystem {inputs}/include"
+
 # Longer names come first: lit replaces a name wherever it begins.
 config.substitutions += [
-    # The same as the next one, with the real headers of ROS.
-    (
-        "%compile-real",
-        f"{clangxx} -std=c++17 -g -flto=full -fpass-plugin={config.tpc_defer}"
-        " -grecord-command-line -c",
-    ),
+    # The same as the next but one, with the real headers of ROS.
+    ("%compile-real", after(f"{clangxx} -std=c++17 {flags} -c", "ros")),
     # The same for C; ROS has no headers for C.
-    (
-        "%compile-c",
-        f"{os.path.join(config.tpc_tools, 'clang')} -g -flto=full"
-        f" -fpass-plugin={config.tpc_defer} -grecord-command-line -c",
-    ),
+    ("%compile-c", f"{clang} {flags} -c"),
     # The compiler as tpc.cmake sets it up; each test adds the level.
-    (
-        "%compile",
-        f"{clangxx} -std=c++17 -g -flto=full -fpass-plugin={config.tpc_defer}"
-        f" -grecord-command-line -isystem {inputs}/include -c",
-    ),
-    ("%native", f"{clangxx} -std=c++17 -O1 -isystem {inputs}/include"),
+    *with_headers("%compile", compile_, {level: f" -{level}" for level in ("O0", "O1", "O2")}),
+    *with_headers("%native", native, {"O1": ""}),
     # The linker with the plugin; further options as `-mllvm -tpc-...`.
     (
         "%link",
