@@ -13,7 +13,7 @@ from pathlib import Path
 import pyarrow as pa
 
 from pytpc.api.comparing import RecordedRun
-from pytpc.api.dask_engine import Engine
+from pytpc.api.dask_engine import DIED, Engine
 from pytpc.api.diagnosing import AskedMission
 from pytpc.api.fleet_missions import (
     FleetMission,
@@ -90,7 +90,7 @@ def judged(
         _Job(fleet, bad, tuple(one.place for one in _beside(bad, good, shared)), build)
         for bad in spread([one for one in found if one.is_bad and one.marks], MOST_BAD)
     ]
-    return engine.joined(_judged, jobs, _joined, on_progress)
+    return _joined(engine.map(_judged, jobs, on_progress, _lost))
 
 
 def notes_on(
@@ -167,7 +167,7 @@ def _judged(job: _Job) -> Judged:
             asked = AskedMission.of(run, static, Question(declared=(), others=others))
             found = blame(asked.run.recording, asked.static_info, asked.question)
     except InputError as error:
-        return Judged(JUDGED.empty_table(), (Unread(job.bad.place, error.message),))
+        return _without(job, error.message)
     none = log(max(found.none, _LEAST))
     rows = [
         {
@@ -181,6 +181,14 @@ def _judged(job: _Job) -> Judged:
         for one in found.suspects
     ]
     return Judged(pa.Table.from_pylist(rows, schema=JUDGED))
+
+
+def _lost(job: _Job) -> Judged:
+    return _without(job, DIED)
+
+
+def _without(job: _Job, why: str) -> Judged:
+    return Judged(JUDGED.empty_table(), (Unread(job.bad.place, why),))
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ import pytest
 from click.testing import CliRunner, Result
 from fleet_samples import Flight, digest
 
-from pytpc.api.dask_engine import engine
+from pytpc.api.dask_engine import Engine, engine
 from pytpc.api.fleet_asking import newest_build, rank
 from pytpc.api.fleet_judging import spread
 from pytpc.api.fleet_missions import FleetMission, missions, once_each
@@ -89,6 +89,26 @@ def test_threads_and_processes_say_the_same(world):
         with engine(cluster, 2) as own:
             answers.append(rank(Fleet(fleet), own))
     assert answers[0] == answers[1]
+
+
+class Deadly(Engine):
+    """Threads as a cluster whose workers die at the first item that can be done without."""
+
+    def map(self, task, items, on_progress=None, lost=None):
+        if lost is None or not items:
+            return super().map(task, items, on_progress)
+        return [lost(items[0]), *super().map(task, items[1:], on_progress)]
+
+
+def test_a_bad_mission_that_does_not_fit_into_memory(world):
+    fleet, _ = world
+    with engine(workers=2) as own:
+        whole = rank(Fleet(fleet), own)
+    found = rank(Fleet(fleet), Deadly(2))
+    (lost,) = found.unread
+    assert lost.why.startswith("worker processes died while they read it")
+    assert found.answer.bad == whole.answer.bad
+    assert found.answer.suspects[0].parameter == whole.answer.suspects[0].parameter
 
 
 @pytest.mark.parametrize("question", ["rank", "drift", "outliers", "find"])
