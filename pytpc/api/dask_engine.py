@@ -37,7 +37,7 @@ _JOINED = 8
 """So many results are joined at once."""
 _ANSWERS_S = 20
 _STARTS_S = 300.0
-"""After so long without any worker process on this machine there will be none: it takes seconds."""
+"""After so long without any worker there will be none: on this machine, one starts in seconds."""
 _AT_START = "pytpc.api.dask_worker"
 
 
@@ -176,7 +176,7 @@ class Engine:
         """Wait in turns, between which a signal is heard.
 
         Raises:
-            TpcError: on this machine no worker process starts any more.
+            TpcError: there has been no worker for long.
         """
         from distributed import wait  # noqa: PLC0415 - it takes a second
 
@@ -184,15 +184,16 @@ class Engine:
         while not all(one.done() for one in wanted):
             with suppress(TimeoutError, asyncio.TimeoutError):
                 wait(wanted, timeout=1)
-            if cluster is None:
-                continue
             # Dask gives up a worker process that dies while it starts.
-            if len(cluster.workers) < self.workers:
+            if cluster is not None and len(cluster.workers) < self.workers:
                 cluster.scale(self.workers)
-            if cluster.scheduler_info["workers"]:
+            if self.client.ncores():
                 seen_s = time.monotonic()
             elif time.monotonic() - seen_s > _STARTS_S:
                 what = "no worker process starts any more; give fewer --workers, or no --cluster"
+                if cluster is None:
+                    address = self.client.scheduler.address
+                    what = f"{address} has no workers; start some with `dask worker {address}`"
                 raise TpcError(what)
 
 

@@ -64,7 +64,8 @@ def test_no_worker_starts_any_more(tmp_path: Path, monkeypatch: pytest.MonkeyPat
             own.map(dies_for_good, [died], lost=lambda _: [])
 
 
-def test_a_scheduler_that_runs_already(tmp_path: Path):
+def test_a_scheduler_that_runs_already(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("pytpc.api.dask_engine._STARTS_S", 1.0)
     file = tmp_path / "scheduler.json"
     folder = str(Path(__file__).parent)
     env = {"PYTHONPATH": ":".join([folder, *sys.path]), "PATH": "/usr/bin:/bin"}
@@ -73,10 +74,17 @@ def test_a_scheduler_that_runs_already(tmp_path: Path):
     started = [subprocess.Popen([*command, *own], env=env, stderr=subprocess.DEVNULL)]
     try:
         wait_for(lambda: file.is_file() and file.read_text().endswith("}"))
+        address = json.loads(file.read_text())["address"]
+        with (
+            engine(address) as found,
+            pytest.raises(TpcError, match=f"no workers; start some with `dask worker {address}`"),
+        ):
+            found.map(square, NUMBERS)
+        monkeypatch.undo()
         worker = [sys.executable, "-m", "distributed.cli.dask_worker", "--no-dashboard"]
         words = [*worker, "--scheduler-file", str(file), "--nthreads", "1"]
         started.append(subprocess.Popen(words, env=env, stderr=subprocess.DEVNULL, cwd=tmp_path))
-        with engine(json.loads(file.read_text())["address"]) as found:
+        with engine(address) as found:
             assert found.joined(square, NUMBERS, joined) == [n * n for n in NUMBERS]
     finally:
         for one in reversed(started):
