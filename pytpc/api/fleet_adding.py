@@ -26,7 +26,7 @@ from pytpc.base.closest import path_hint
 from pytpc.base.errors import InputError, TpcError
 from pytpc.base.legal_names import file_part
 from pytpc.base.wording import plain
-from pytpc.fleet.store import FLEET_FILE, Fleet, Place
+from pytpc.fleet.data_set import FLEET_FILE, Fleet, Place
 from pytpc.fleet.tables import MISSIONS, Table
 from pytpc.ingest.reading import holds_mission, read
 from pytpc.recording.marks_home import marks_home

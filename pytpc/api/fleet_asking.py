@@ -40,7 +40,8 @@ from pytpc.diagnosis.results.fleet import (
     FoundMission,
     FoundTurn,
 )
-from pytpc.fleet.store import Fleet, Place, shown_url
+from pytpc.fleet.data_set import Fleet, Place
+from pytpc.fleet.store import shown_url
 from pytpc.fleet.tables import COMPARISONS, VALUES, WORD
 from pytpc.recording.parameter_values import ParameterValues, SetValue
 from pytpc.recording.profile import LearnedRun

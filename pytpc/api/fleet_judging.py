@@ -29,7 +29,7 @@ from pytpc.diagnosis.fleet.rows import Rows
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.blame import blame
 from pytpc.diagnosis.thinned import thinned
-from pytpc.fleet.store import Fleet, Place
+from pytpc.fleet.data_set import Fleet, Place
 from pytpc.recording.mission import load_recording
 
 MOST_BAD = 24

@@ -22,7 +22,8 @@ from pytpc.base.closest import did_you_mean
 from pytpc.base.errors import InputError, TpcError
 from pytpc.base.paths import MERGED_FILE
 from pytpc.base.wording import plain
-from pytpc.fleet.store import Fleet, Place, shown_url
+from pytpc.fleet.data_set import Fleet, Place
+from pytpc.fleet.store import shown_url
 from pytpc.fleet.tables import COMMIT, MISSIONS
 from pytpc.recording.mission import EVENTS_FILE, SUMMARIES_FILE, load_recording
 from pytpc.static.static_info import StaticInfo

@@ -29,7 +29,8 @@ from pytpc.cli.fleet_options import (
     selecting,
     store_options,
 )
-from pytpc.fleet.store import Fleet, shown_url
+from pytpc.fleet.data_set import Fleet
+from pytpc.fleet.store import shown_url
 from pytpc.present.fleet_columns import drifts_table, found_table, outliers_table, ranking_table
 from pytpc.present.fleet_json import drifts_json, found_json, outliers_json, ranking_json
 from pytpc.present.fleet_page import (

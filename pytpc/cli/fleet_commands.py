@@ -48,7 +48,8 @@ from pytpc.cli.fleet_options import (
     store_options,
 )
 from pytpc.cli.lines import say
-from pytpc.fleet.store import Fleet, shown_url
+from pytpc.fleet.data_set import Fleet
+from pytpc.fleet.store import shown_url
 
 _UNITS = ("B", "kB", "MB", "GB", "TB")
 

@@ -16,7 +16,8 @@ from pytpc.api.dask_engine import Engine, engine
 from pytpc.api.fleet_missions import Selection, Unread
 from pytpc.cli.arguments import PATH
 from pytpc.cli.console import warn
-from pytpc.fleet.store import PATIENCE_S, Fleet
+from pytpc.fleet.data_set import Fleet
+from pytpc.fleet.store import PATIENCE_S
 
 Command = TypeVar("Command", bound=Callable[..., object])
 _DAY = re.compile(r"\d{4}-\d\d-\d\d")

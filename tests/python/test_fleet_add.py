@@ -29,7 +29,7 @@ from pytpc.api.fleet_missions import Selection, missions, write_folder
 from pytpc.api.missions import with_names_of
 from pytpc.base.errors import InputError, TpcError
 from pytpc.cli.main import main
-from pytpc.fleet.store import Fleet, Place
+from pytpc.fleet.data_set import Fleet, Place
 from pytpc.ingest.condense import condensed
 from pytpc.ingest.reading import read
 from pytpc.recording.events import Events

@@ -17,7 +17,7 @@ from pytpc.api.dask_engine import engine
 from pytpc.api.fleet_adding import Added, AddOptions, add, missions_at, stamp_of
 from pytpc.api.fleet_missions import FleetMission, missions
 from pytpc.cli.main import main
-from pytpc.fleet.store import Fleet
+from pytpc.fleet.data_set import Fleet
 
 pytestmark = pytest.mark.filterwarnings("ignore")
 

@@ -19,7 +19,7 @@ from pytpc.api.fleet_judging import spread
 from pytpc.api.fleet_missions import FleetMission, missions, once_each
 from pytpc.base.errors import InputError
 from pytpc.cli.main import main
-from pytpc.fleet.store import Fleet, Place
+from pytpc.fleet.data_set import Fleet, Place
 from pytpc.fleet.tables import COMPARISONS, MISSIONS
 from pytpc_evaluation.fleet.generating import generate
 from pytpc_evaluation.fleet.world import WorldSettings

@@ -6,7 +6,7 @@ import pytest
 
 from pytpc.base.errors import TpcError
 from pytpc.diagnosis.results.fleet import FleetEvidence, FleetRanking, FleetSuspect
-from pytpc.fleet.store import Fleet, Place
+from pytpc.fleet.data_set import Fleet, Place
 from pytpc.fleet.tables import MISSIONS
 from pytpc_evaluation.study.fleet_product import link_missions, verdicts_of
 

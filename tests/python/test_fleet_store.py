@@ -21,7 +21,8 @@ from pytpc.api.fleet_adding import AddOptions, add, missions_at
 from pytpc.api.fleet_missions import opened, write_folder
 from pytpc.base.errors import InputError, TpcError
 from pytpc.cli.main import main
-from pytpc.fleet.store import Fleet, Place, shown_url
+from pytpc.fleet.data_set import Fleet, Place
+from pytpc.fleet.store import Store, shown_url
 from pytpc.fleet.tables import TABLES
 
 pytestmark = pytest.mark.filterwarnings("ignore")
@@ -46,15 +47,15 @@ def test_a_mission_that_is_replaced_does_not_exist_meanwhile(
 ):
     (place,) = fleet.places()
     tables = tables_of(fleet, place)
-    real, seen = Fleet._put, []
+    real, seen = Store.put, []
 
-    def put(self: Fleet, name: str, content: bytes) -> None:
-        seen.append((name.partition("/")[0], self.has(place)))
+    def put(self: Store, name: str, content: bytes) -> None:
+        seen.append((name.partition("/")[0], fleet.has(place)))
         if name.startswith("values"):
             raise KeyboardInterrupt
         real(self, name, content)
 
-    monkeypatch.setattr(Fleet, "_put", put)
+    monkeypatch.setattr(Store, "put", put)
     with pytest.raises(KeyboardInterrupt):
         fleet.write(place, tables | {"marks": tables["marks"].slice(0, 0)})
     assert seen
@@ -67,10 +68,10 @@ def test_the_same_again_touches_nothing(fleet: Fleet, monkeypatch: pytest.Monkey
     (place,) = fleet.places()
     tables = tables_of(fleet, place)
 
-    def put(self: Fleet, name: str, content: bytes) -> None:
+    def put(self: Store, name: str, content: bytes) -> None:
         pytest.fail(f"{name} is written again")
 
-    monkeypatch.setattr(Fleet, "_put", put)
+    monkeypatch.setattr(Store, "put", put)
     assert fleet.write(place, tables) > 0
 
 
@@ -79,15 +80,15 @@ def test_what_is_dropped_while_it_is_added_is_whole(fleet: Fleet, monkeypatch: p
     (place,) = fleet.places()
     tables = tables_of(fleet, place)
     fleet.drop(place)
-    real = Fleet._put
+    real = Store.put
 
-    def put(self: Fleet, name: str, content: bytes) -> None:
+    def put(self: Store, name: str, content: bytes) -> None:
         if name.startswith("missions"):
-            monkeypatch.setattr(Fleet, "_put", real)
-            self.drop(place)
+            monkeypatch.setattr(Store, "put", real)
+            fleet.drop(place)
         real(self, name, content)
 
-    monkeypatch.setattr(Fleet, "_put", put)
+    monkeypatch.setattr(Store, "put", put)
     fleet.write(place, tables)
     assert tables_of(fleet, place) == tables
 
@@ -96,16 +97,16 @@ def test_what_is_dropped_while_it_is_added_is_whole(fleet: Fleet, monkeypatch: p
 def test_what_is_added_while_it_is_dropped_is_gone(fleet: Fleet, monkeypatch: pytest.MonkeyPatch):
     (place,) = fleet.places()
     tables = tables_of(fleet, place)
-    real = Fleet._remove
+    real = Store.remove
 
-    def remove(self: Fleet, name: str) -> None:
+    def remove(self: Store, name: str) -> None:
         real(self, name)
         if name.startswith("marks"):
-            monkeypatch.setattr(Fleet, "_remove", real)
-            self.write(place, tables)
+            monkeypatch.setattr(Store, "remove", real)
+            fleet.write(place, tables)
             real(self, name)
 
-    monkeypatch.setattr(Fleet, "_remove", remove)
+    monkeypatch.setattr(Store, "remove", remove)
     fleet.drop(place)
     assert fleet.places() == []
     assert fleet.unfinished() == []
@@ -195,17 +196,17 @@ def test_a_file_that_is_taken_away_is_written_again(fleet: Fleet, monkeypatch: p
 
 def test_two_who_begin_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     fleet = Fleet(str(tmp_path / "fleet"))
-    real, asked = Fleet._has, []
+    real, asked = Store.has, []
 
-    def has(self: Fleet, name: str) -> bool:
+    def has(self: Store, name: str) -> bool:
         found = real(self, name)
         if not asked:
             asked.append(name)
             # The other one is about to put its file in place, and does so.
-            self.begin()
+            fleet.begin()
         return found
 
-    monkeypatch.setattr(Fleet, "_has", has)
+    monkeypatch.setattr(Store, "has", has)
     fleet.begin()
     fleet.check()
     other = tmp_path / "other"
@@ -259,15 +260,15 @@ class _Cached(MemoryFileSystem):
 
 def test_what_others_wrote_meanwhile_counts(fleet: Fleet):
     fsspec.register_implementation("cached-listings", _Cached, clobber=True)
-    store = Fleet("cached-listings://fleet")
+    other = Fleet("cached-listings://fleet")
     (place,) = fleet.places()
     try:
-        assert store.places() == []
-        assert not store.has(place)
+        assert other.places() == []
+        assert not other.has(place)
         path = f"missions/{place.folder}/part.parquet"
-        MemoryFileSystem().pipe_file(store._at_store(path), fleet._get(path))
-        assert store.places() == [place]
-        assert store.has(place)
+        MemoryFileSystem().pipe_file(other.store._at(path), fleet.store.get(path))
+        assert other.places() == [place]
+        assert other.has(place)
     finally:
         MemoryFileSystem.store.clear()
 
@@ -275,10 +276,10 @@ def test_what_others_wrote_meanwhile_counts(fleet: Fleet):
 # What keeps copies of files of a store is no folder of this machine.
 def test_a_store_with_copies_is_no_folder(tmp_path: Path):
     try:
-        store = Fleet("filecache::memory://fleet", options={"filecache": {"cache_storage": "TMP"}})
+        store = Store("filecache::memory://fleet", options={"filecache": {"cache_storage": "TMP"}})
         assert not store._is_local
-        assert Fleet(str(tmp_path))._is_local
-        assert Fleet(f"file://{tmp_path}")._is_local
+        assert Store(str(tmp_path))._is_local
+        assert Store(f"file://{tmp_path}")._is_local
     finally:
         MemoryFileSystem.store.clear()
 

@@ -21,7 +21,7 @@ from pytpc.api.fleet_adding import Verdict as Said
 from pytpc.api.fleet_asking import rank
 from pytpc.base.errors import TpcError
 from pytpc.diagnosis.results.fleet import FleetRanking
-from pytpc.fleet.store import Fleet, Place
+from pytpc.fleet.data_set import Fleet, Place
 from pytpc_evaluation.study.case import Verdict
 from pytpc_evaluation.study.fleet_judge import Progress
 from pytpc_evaluation.study.fleet_questions import FleetQuestion
