@@ -1,4 +1,4 @@
-"""Adds missions to a fleet's data set: finds them, makes them small, and writes them."""
+"""Adds missions to a fleet's data set: makes them small, and writes them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import glob
 import hashlib
 import os
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timezone
 from importlib.metadata import version
@@ -18,19 +18,19 @@ import pyarrow as pa
 from pytpc.api.comparing import RecordedRun
 from pytpc.api.dask_engine import DIED, Engine
 from pytpc.api.fleet_digests import comparisons_of, files_of, marks_of, mission_id, values_of
+from pytpc.api.fleet_given import BAGS, Given
 from pytpc.api.fleet_missions import FleetMission, missions_in
 from pytpc.api.missions import check_reports, load_static, with_names_of
 from pytpc.api.static_of_mission import find_static, recorded_static
 from pytpc.base.checked_json import dump_json
-from pytpc.base.closest import path_hint
-from pytpc.base.errors import InputError, TpcError
+from pytpc.base.errors import TpcError
 from pytpc.base.legal_names import file_part
 from pytpc.base.wording import plain
-from pytpc.fleet.data_set import FLEET_FILE, Fleet, Place
+from pytpc.fleet.data_set import Fleet, Place
 from pytpc.fleet.tables import MISSIONS, Table
-from pytpc.ingest.reading import holds_mission, read
+from pytpc.ingest.reading import read
 from pytpc.recording.marks_home import marks_home
-from pytpc.recording.mission import RUN_FILE, Recording, is_converted, is_ros2_folder
+from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.origins import origins_file
 from pytpc.values.recording import params_file
@@ -42,8 +42,7 @@ VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 
 PERIOD_NS = 10 * 10**9
 """Of a comparison there is a summary for each period of this length in which it was evaluated."""
-_BAGS = (".bag", ".mcap", ".db3")
-_RECORDED = (*_BAGS, ".tpc", ".parquet", ".log")
+_RECORDED = (*BAGS, ".tpc", ".parquet", ".log")
 _MOST_FILES = 10_000
 _FIRST_REAL_NS = 10**18
 """Before 2001 no robot had reports: such a clock is simulated, or was never set."""
@@ -53,17 +52,6 @@ _ROOT, _ROOTED = b'"source_root"', b'"source_root": "/'
 _MOST_KNOWN = 8
 _KNOWN: dict[tuple[bytes, Path | None], tuple[StaticInfo, bytes]] = {}
 """Static information that this process has read, by its content."""
-
-
-class Given(NamedTuple):
-    """A mission to add: its path, and the name of its robot.
-
-    A folder that cannot be searched for missions stands for them; ``why`` says why then.
-    """
-
-    path: Path
-    robot: str
-    why: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,75 +89,6 @@ class Added(NamedTuple):
     notes: tuple[str, ...] = ()
     why: str = ""
     replaced: tuple[Place, ...] = ()
-
-
-def missions_at(paths: Iterable[Path], robot: str | None = None) -> list[Given]:
-    """The missions at paths, each once: recordings, and all that lie in folders, at any depth.
-
-    A folder that is one mission by its form is one, also with several files; in other folders each
-    bag is a mission. Links to folders are not followed.
-
-    Args:
-        paths: files and folders.
-        robot: the name of their robot. None: the first folder below the given one, if the missions
-            lie deeper; else the name of the given folder, or of that with the file.
-
-    Raises:
-        InputError: a path is not there, or has no mission.
-    """
-    found: dict[Path, Given] = {}
-    for path in paths:
-        if not path.exists():
-            raise InputError(f"no such bag, file or folder{path_hint(path)}", path)
-        before = len(found)
-        for one, why in _below(path) if path.is_dir() else [(path, "")]:
-            if why and one == path:
-                raise InputError(why, path)
-            name = (robot or _robot_of(one, path)).encode("utf-8", "surrogateescape")
-            found.setdefault(one.absolute(), Given(one, name.decode("utf-8", "replace"), why))
-        if len(found) == before and not any(path.absolute() in one.parents for one in found):
-            raise InputError("no recordings in this folder, or in those in it", path)
-    return [found[path] for path in sorted(found)]
-
-
-def _below(folder: Path) -> Iterator[tuple[Path, str]]:
-    """The missions in a folder, at any depth; and folders that cannot be read, with the reason."""
-    left = [folder]
-    while left:
-        one = left.pop()
-        try:
-            missions, folders = _in(one)
-        except OSError as error:
-            yield one, f"cannot be read: {error.strerror or error}"
-            continue
-        yield from ((mission, "") for mission in missions)
-        left += reversed(folders)
-
-
-def _in(folder: Path) -> tuple[list[Path], list[Path]]:
-    """The missions in a folder, and the folders that may have more.
-
-    Raises:
-        OSError: it cannot be read.
-    """
-    entries = sorted(one for one in folder.iterdir() if not one.name.startswith("."))
-    names = {one.name for one in entries}
-    if RUN_FILE in names or is_converted(folder) or is_ros2_folder(folder):
-        return [folder], []
-    if FLEET_FILE in names:
-        return [], []
-    bags = [one for one in entries if one.suffix in _BAGS and one.is_file()]
-    if not bags and holds_mission(folder):
-        return [folder], []
-    return bags, [one for one in entries if one.is_dir() and not one.is_symlink()]
-
-
-def _robot_of(mission: Path, given: Path) -> str:
-    given, mission = given.absolute(), mission.absolute()
-    if mission == given:
-        return given.parent.name or "robot"
-    between = mission.relative_to(given).parts[:-1]
-    return between[0] if between else given.name or "robot"
 
 
 def add(

@@ -12,16 +12,8 @@ from typing import Any
 
 import click
 
-from pytpc.api.fleet_adding import (
-    KEEPS,
-    VERDICTS,
-    Added,
-    AddOptions,
-    Keep,
-    Verdict,
-    add,
-    missions_at,
-)
+from pytpc.api.fleet_adding import KEEPS, VERDICTS, Added, AddOptions, Keep, Verdict, add
+from pytpc.api.fleet_given import missions_at
 from pytpc.api.fleet_missions import (
     EVERY,
     FleetMission,

@@ -23,8 +23,9 @@ from recorded_fleet import EXAMPLE, mission
 
 from patience import PATIENCE_S, wait_for
 from pytpc.api.dask_engine import engine
-from pytpc.api.fleet_adding import AddOptions, add, missions_at
+from pytpc.api.fleet_adding import AddOptions, add
 from pytpc.api.fleet_digests import comparisons_of
+from pytpc.api.fleet_given import missions_at
 from pytpc.api.fleet_missions import Selection, missions, write_folder
 from pytpc.api.missions import with_names_of
 from pytpc.base.errors import InputError, TpcError

@@ -14,7 +14,8 @@ from click.testing import CliRunner
 from recorded_fleet import STATIC, mission
 
 from pytpc.api.dask_engine import engine
-from pytpc.api.fleet_adding import Added, AddOptions, add, missions_at, stamp_of
+from pytpc.api.fleet_adding import Added, AddOptions, add, stamp_of
+from pytpc.api.fleet_given import missions_at
 from pytpc.api.fleet_missions import FleetMission, missions
 from pytpc.cli.main import main
 from pytpc.fleet.data_set import Fleet

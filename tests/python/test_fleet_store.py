@@ -17,7 +17,8 @@ from fsspec.implementations.memory import MemoryFileSystem
 from recorded_fleet import mission
 
 from pytpc.api.dask_engine import engine
-from pytpc.api.fleet_adding import AddOptions, add, missions_at
+from pytpc.api.fleet_adding import AddOptions, add
+from pytpc.api.fleet_given import missions_at
 from pytpc.api.fleet_missions import opened, write_folder
 from pytpc.base.errors import InputError, TpcError
 from pytpc.cli.main import main

@@ -16,9 +16,10 @@ from pathlib import Path
 from typing import Any
 
 from pytpc.api.dask_engine import Engine
-from pytpc.api.fleet_adding import AddOptions, Given, add
+from pytpc.api.fleet_adding import AddOptions, add
 from pytpc.api.fleet_adding import Verdict as Said
 from pytpc.api.fleet_asking import rank
+from pytpc.api.fleet_given import Given
 from pytpc.base.errors import TpcError
 from pytpc.diagnosis.results.fleet import FleetRanking
 from pytpc.fleet.data_set import Fleet, Place
