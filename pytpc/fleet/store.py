@@ -113,7 +113,11 @@ class Store:
     def put(self, name: str, content: bytes) -> None:
         """Write a file, in the place of what was there."""
         path = self._at(name)
-        self._asked(lambda: self._written(path, content))
+        try:
+            self._asked(lambda: self._written(path, content))
+        except FileNotFoundError as error:
+            why = shown_url(f"{error.strerror or error}")
+            raise TpcError(f"cannot be written: {why}", self.path_of(name)) from error
 
     def remove(self, name: str) -> None:
         """Remove a file, unless there is none."""
@@ -260,9 +264,19 @@ def _write(target: Path, content: bytes) -> None:
                 staged.unlink(missing_ok=True)
             break
         except FileNotFoundError:
+            # Of many who write the same at once, each takes away what the others have begun.
+            if _is_there(target, content):
+                break
             if not left:
                 raise
     _tidy(target)
+
+
+def _is_there(target: Path, content: bytes) -> bool:
+    try:
+        return target.read_bytes() == content
+    except OSError:
+        return False
 
 
 def _tidy(target: Path) -> None:

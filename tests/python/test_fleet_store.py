@@ -195,6 +195,34 @@ def test_a_file_that_is_taken_away_is_written_again(fleet: Fleet, monkeypatch: p
     assert tables_of(fleet, place) == tables
 
 
+# The first missions of a build, on many workers: each time another one is a little earlier.
+def test_many_who_write_the_same_file_at_once(fleet: Fleet, monkeypatch: pytest.MonkeyPatch):
+    real = Path.replace
+
+    def replace(self: Path, target: Path) -> Path:
+        monkeypatch.setattr(Path, "replace", real)
+        fleet.store.put("builds/0123.json", b"{}")
+        monkeypatch.setattr(Path, "replace", replace)
+        return real(self, target)
+
+    monkeypatch.setattr(Path, "replace", replace)
+    fleet.put_build("0123", b"{}")
+    assert fleet.build("0123") == b"{}"
+    assert len(list((Path(fleet.url) / "builds").glob("*0123*"))) == 1
+
+
+def test_a_file_that_is_always_taken_away(fleet: Fleet, monkeypatch: pytest.MonkeyPatch):
+    real = Path.replace
+
+    def replace(self: Path, target: Path) -> Path:
+        self.unlink()
+        return real(self, target)
+
+    monkeypatch.setattr(Path, "replace", replace)
+    with pytest.raises(TpcError, match=r"builds/0123\.json: cannot be written: No such file"):
+        fleet.put_build("0123", b"{}")
+
+
 def test_two_who_begin_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     fleet = Fleet(str(tmp_path / "fleet"))
     real, asked = Store.has, []
