@@ -280,6 +280,10 @@ def _is_there(target: Path, content: bytes) -> bool:
 
 
 def _tidy(target: Path) -> None:
-    """Remove what somebody who was killed left of a file; who still writes it begins again."""
+    """Remove what somebody who was killed left of a file; who still writes it begins again.
+
+    What is not ours to remove stays: the file itself is whole, or gone.
+    """
     for path in leftovers(target):
-        path.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):
+            path.unlink()

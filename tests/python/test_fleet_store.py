@@ -223,6 +223,24 @@ def test_a_file_that_is_always_taken_away(fleet: Fleet, monkeypatch: pytest.Monk
         fleet.put_build("0123", b"{}")
 
 
+# A folder stands for what somebody else owns, which the system does not let us remove.
+def test_a_leftover_that_cannot_be_removed_does_no_harm(fleet: Fleet):
+    (place,) = fleet.places()
+    tables = tables_of(fleet, place)
+    fleet.drop(place)
+    root = Path(fleet.url)
+    (build,) = (root / "builds").iterdir()
+    folder = root / "marks" / place.folder
+    for owned in (build, folder / "part.parquet"):
+        owned.with_name(f".{owned.name}.tpc-0123abcd").mkdir(parents=True)
+    fleet.put_build(build.stem, build.read_bytes())
+    fleet.write(place, tables)
+    assert tables_of(fleet, place) == tables
+    fleet.drop(place)
+    assert fleet.places() == []
+    assert fleet.unfinished() == []
+
+
 def test_two_who_begin_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     fleet = Fleet(str(tmp_path / "fleet"))
     real, asked = Store.has, []
