@@ -20,6 +20,7 @@ from pytpc.cli.lines import say
 from pytpc_evaluation.commands.study_options import CHOSEN, RANK_AGAIN, RANK_JOBS, half_option
 from pytpc_evaluation.commands.study_progress import StudyProgress
 from pytpc_evaluation.demo.demo_examples import EXAMPLES
+from pytpc_evaluation.study.fleet_causes import causes_questions, judge_causes
 from pytpc_evaluation.study.fleet_flying import (
     FLIGHTS_FILE,
     load_rows,
@@ -45,7 +46,7 @@ from pytpc_evaluation.study.fleet_questions import (
     questions,
 )
 from pytpc_evaluation.study.plan import FlightSelection, check_treatments
-from pytpc_evaluation.study.report.fleets import fleet_tables
+from pytpc_evaluation.study.report.fleets import causes_table, fleet_tables
 from pytpc_evaluation.study.resume import alone_with_results
 from pytpc_evaluation.tables import as_markdown
 
@@ -65,6 +66,13 @@ _TREATMENTS = click.option(
     "treatments",
     multiple=True,
     help="Only the bad missions of this treatment, beside all good ones; may be repeated.",
+)
+_GOOD = click.option(
+    "--good",
+    type=click.IntRange(1, 60),
+    default=GOOD,
+    show_default=True,
+    help="How many good missions a question has.",
 )
 
 
@@ -175,13 +183,7 @@ def show_command(*, out: Path, as_json: bool) -> None:
     show_default=True,
     help="How many bad missions a question has; a treatment with less than 80 % is left out.",
 )
-@click.option(
-    "--good",
-    type=click.IntRange(1, 60),
-    default=GOOD,
-    show_default=True,
-    help="How many good missions a question has.",
-)
+@_GOOD
 @click.option("--alone/--no-alone", default=True, help="Also rank each bad mission by itself.")
 @RANK_AGAIN
 @RANK_JOBS
@@ -232,6 +234,66 @@ def judge_command(
     for table in fleet_tables(verdicts):
         click.echo(f"**{table.title}:**\n\n{as_markdown(table)}")
     say(f"{many(len(asked), 'question')}: {out / RESULTS_FILE}")
+
+
+@fleet_group.command("causes")
+@_OUT
+@click.option(
+    "--causes",
+    type=click.IntRange(1, 8),
+    default=3,
+    show_default=True,
+    help="How many parameters are wrong in a question, each in other missions.",
+)
+@click.option(
+    "--draws",
+    type=click.IntRange(1, 100),
+    default=10,
+    show_default=True,
+    help="How many questions about each system.",
+)
+@click.option(
+    "--bad",
+    type=click.IntRange(1, 16),
+    default=BAD,
+    show_default=True,
+    help="How many bad missions each parameter has; one with less than 80 % is left out.",
+)
+@_GOOD
+@RANK_JOBS
+@JSON
+def causes_command(
+    *, out: Path, causes: int, draws: int, bad: int, good: int, jobs: int, as_json: bool
+) -> None:
+    """Ask the fleet's ranking about fleets with several causes, and show which ones it names."""
+    # Dask takes a second to import, which other commands need not wait for.
+    from pytpc.api.dask_engine import engine  # noqa: PLC0415
+    from pytpc_evaluation.study.fleet_product import add_flown, ranking_of  # noqa: PLC0415
+
+    rows = load_rows(out)
+    asked = list(causes_questions(rows, draws, causes, bad, good))
+    if not asked:
+        raise InputError("too few missions are flown; fly on with `pytpc study fleet fly`", out)
+    folders = {folder for one in asked for folder in one.missions}
+    with alone_with_results(out), engine(None, jobs) as workers:
+        with progress("adding missions") as advance:
+            own = [row for row in rows if row["folder"] in folders]
+            places = add_flown(out, own, workers, advance)
+
+        def causes_of(system: str, missions: Sequence[str]) -> list[str]:
+            ranking = ranking_of(out, system, [places[one] for one in missions], workers)
+            return [one.parameter for one in ranking.causes]
+
+        verdicts = []
+        with progress("ranking fleets") as advance:
+            for number, question in enumerate(asked, start=1):
+                verdicts.append(judge_causes(question, causes_of))
+                advance(number, len(asked))
+    if as_json:
+        print_json([asdict(one) for one in verdicts])
+        return
+    table = causes_table(verdicts)
+    click.echo(f"**{table.title}:**\n\n{as_markdown(table)}")
 
 
 def _rows_of(

@@ -93,13 +93,31 @@ class FleetRanker:
         by_marks = question.shape == "by-marks"
         known = self.by_marks if by_marks else self.places
         places = [known[folder] for folder in (*question.bad, *question.good)]
-        whole = _fleet(out, question.system, by_marks)
-        with tempfile.TemporaryDirectory(prefix=".question-", dir=out / _SETS) as folder:
-            link_missions(Path(whole.url), places, Path(folder))
-            found = rank(Fleet(folder), self.engine)
-        if found.unread:
-            raise TpcError(found.unread[0].why, Path(whole.url))
-        return verdicts_of(found.answer)
+        return verdicts_of(ranking_of(out, question.system, places, self.engine, by_marks=by_marks))
+
+
+def ranking_of(
+    out: Path, system: str, places: Sequence[Place], engine: Engine, *, by_marks: bool = False
+) -> FleetRanking:
+    """What the product says of some missions of a system.
+
+    Args:
+        out: the folder of fleets.
+        system: the robot.
+        places: of the missions, from ``add_flown``.
+        engine: where the work is done.
+        by_marks: as they were added.
+
+    Raises:
+        TpcError: a mission cannot be read, or they cannot be ranked.
+    """
+    whole = _fleet(out, system, by_marks)
+    with tempfile.TemporaryDirectory(prefix=".question-", dir=out / _SETS) as folder:
+        link_missions(Path(whole.url), places, Path(folder))
+        found = rank(Fleet(folder), engine)
+    if found.unread:
+        raise TpcError(found.unread[0].why, Path(whole.url))
+    return found.answer
 
 
 def link_missions(whole: Path, places: Sequence[Place], part: Path) -> None:

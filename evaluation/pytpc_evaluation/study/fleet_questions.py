@@ -22,7 +22,7 @@ ASKED: tuple[Shape, ...] = ("mixed", "one-robot")
 """Those that are asked if nothing is said."""
 BAD = 10
 GOOD = 50
-_MARKED = 0.8
+MARKED = 0.8
 """Nothing is asked of a treatment with a smaller share of the wanted bad missions."""
 DRAWS = 3
 
@@ -63,22 +63,13 @@ def questions(
         bad_count: how many bad missions a question has; with less than 80 % of them there is none.
         good_count: how many good ones; with fewer there is none.
     """
-    good: defaultdict[str, list[Mapping[str, Any]]] = defaultdict(list)
-    bad: defaultdict[tuple[str, str], list[Mapping[str, Any]]] = defaultdict(list)
-    for row in rows:
-        if row["state"] != "done":
-            continue
-        if row["parameter"] is None:
-            if not row["errors"]:
-                good[row["system"]].append(row)
-        elif row["errors"] and row["marks"]:
-            bad[row["system"], row["treatment"]].append(row)
+    good, bad = by_verdict(rows)
     for (system, treatment), marked in sorted(bad.items()):
-        if len(good[system]) < good_count:
+        if len(good.get(system, ())) < good_count:
             continue
         for shape in shapes:
             among = _of_one_robot(marked) if shape == "one-robot" else marked
-            if len(among) < _MARKED * bad_count:
+            if len(among) < MARKED * bad_count:
                 continue
             for draw in range(draws):
                 drawn = "one-robot" if shape == "one-robot" else "mixed"
@@ -95,6 +86,26 @@ def questions(
                     bad=by_turns(among, bad_count, dice),
                     good=by_turns(good[system], good_count, dice),
                 )
+
+
+def by_verdict(
+    rows: Iterable[Mapping[str, Any]],
+) -> tuple[dict[str, list[Mapping[str, Any]]], dict[tuple[str, str], list[Mapping[str, Any]]]]:
+    """The flown missions that went right, by system, and those that went wrong and were marked.
+
+    The latter are by system and treatment.
+    """
+    good: defaultdict[str, list[Mapping[str, Any]]] = defaultdict(list)
+    bad: defaultdict[tuple[str, str], list[Mapping[str, Any]]] = defaultdict(list)
+    for row in rows:
+        if row["state"] != "done":
+            continue
+        if row["parameter"] is None:
+            if not row["errors"]:
+                good[row["system"]].append(row)
+        elif row["errors"] and row["marks"]:
+            bad[row["system"], row["treatment"]].append(row)
+    return good, bad
 
 
 def by_turns(rows: Iterable[Mapping[str, Any]], count: int, dice: random.Random) -> tuple[str, ...]:

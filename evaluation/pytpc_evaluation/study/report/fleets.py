@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from pytpc_evaluation.study.fleet_causes import CausesVerdict
 from pytpc_evaluation.study.fleet_judge import FleetVerdict
 from pytpc_evaluation.study.fleet_questions import SHAPES
 from pytpc_evaluation.study.metrics import Estimate, exact_share
@@ -46,6 +47,29 @@ def fleet_tables(verdicts: Sequence[FleetVerdict]) -> list[Table]:
         for shape in SHAPES
         if (own := [one for one in verdicts if one.shape == shape])
     ]
+
+
+def causes_table(verdicts: Sequence[CausesVerdict]) -> Table:
+    """For each system, and all of them, the share of the wrong parameters that were named."""
+    columns = (
+        Column("Questions", 0),
+        Column("Named %", 0),
+        Column("All named, none false %", 0),
+        Column("Named falsely", 0),
+    )
+    lines: list[tuple[str, tuple[Cell, ...]]] = []
+    for system in (*sorted({one.system for one in verdicts}), "all"):
+        own = [one for one in verdicts if system in {one.system, "all"}]
+        named = exact_share(
+            [float(is_named) for one in own for is_named in one.named],
+            [(one.system, treatment) for one in own for treatment in one.treatments],
+        )
+        whole = sum(all(one.named) and not one.false for one in own) / len(own)
+        false = sum(len(one.false) for one in own)
+        lines.append((system, (len(own), percent(named), 100.0 * whole, false)))
+    causes = sorted({len(one.named) for one in verdicts})
+    notes = (f"Each question has {_span(causes)} wrong parameters, each in other missions.",)
+    return Table("fleet-causes", "Several causes", columns, tuple(lines), (), "System", notes=notes)
 
 
 def first_share(verdicts: Sequence[FleetVerdict]) -> Estimate:
