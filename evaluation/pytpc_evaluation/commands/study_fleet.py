@@ -67,6 +67,13 @@ _TREATMENTS = click.option(
     multiple=True,
     help="Only the bad missions of this treatment, beside all good ones; may be repeated.",
 )
+_BAD = click.option(
+    "--bad",
+    type=click.IntRange(1, 16),
+    default=BAD,
+    show_default=True,
+    help="How many bad missions a question has of a treatment; with less than 80 % it is left out.",
+)
 _GOOD = click.option(
     "--good",
     type=click.IntRange(1, 60),
@@ -176,13 +183,7 @@ def show_command(*, out: Path, as_json: bool) -> None:
     show_default=True,
     help="How many questions, with other missions, about each treatment.",
 )
-@click.option(
-    "--bad",
-    type=click.IntRange(1, 16),
-    default=BAD,
-    show_default=True,
-    help="How many bad missions a question has; a treatment with less than 80 % is left out.",
-)
+@_BAD
 @_GOOD
 @click.option("--alone/--no-alone", default=True, help="Also rank each bad mission by itself.")
 @RANK_AGAIN
@@ -213,8 +214,7 @@ def judge_command(
     rows = load_rows(out)
     every = questions(rows, draws, shapes or ASKED, bad, good)
     asked = [one for one in every if one.half in CHOSEN[half]]
-    if not asked:
-        raise InputError("too few missions are flown; fly on with `pytpc study fleet fly`", out)
+    _check_flown(asked, out)
     with alone_with_results(out), engine(None, jobs) as workers:
         with progress("adding missions") as advance:
             said, marked = (
@@ -252,13 +252,7 @@ def judge_command(
     show_default=True,
     help="How many questions about each system.",
 )
-@click.option(
-    "--bad",
-    type=click.IntRange(1, 16),
-    default=BAD,
-    show_default=True,
-    help="How many bad missions each parameter has; one with less than 80 % is left out.",
-)
+@_BAD
 @_GOOD
 @RANK_JOBS
 @JSON
@@ -272,8 +266,7 @@ def causes_command(
 
     rows = load_rows(out)
     asked = list(causes_questions(rows, draws, causes, bad, good))
-    if not asked:
-        raise InputError("too few missions are flown; fly on with `pytpc study fleet fly`", out)
+    _check_flown(asked, out)
     folders = {folder for one in asked for folder in one.missions}
     with alone_with_results(out), engine(None, jobs) as workers:
         with progress("adding missions") as advance:
@@ -294,6 +287,12 @@ def causes_command(
         return
     table = causes_table(verdicts)
     click.echo(f"**{table.title}:**\n\n{as_markdown(table)}")
+
+
+def _check_flown(asked: Sequence[object], out: Path) -> None:
+    """InputError where the flown missions allow no question."""
+    if not asked:
+        raise InputError("too few missions are flown; fly on with `pytpc study fleet fly`", out)
 
 
 def _rows_of(

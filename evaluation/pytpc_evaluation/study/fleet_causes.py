@@ -1,7 +1,7 @@
 """Asks the fleet's ranking about fleets with several wrong parameters, each in other missions.
 
 A question has bad missions of several treatments of a system, which change different parameters,
-and good ones. The answer are the causes that the ranking names, however many.
+and good ones. The answer is what the ranking names as causes, however many.
 """
 
 from __future__ import annotations
@@ -35,8 +35,11 @@ class CausesQuestion:
 
 @dataclass(frozen=True, slots=True)
 class CausesVerdict:
-    """What was named: ``named`` says of each treatment whether its parameter was; ``false`` are
-    parameters of which none is wrong."""
+    """What was named.
+
+    ``named`` says of each treatment whether its parameter was; ``false`` are the parameters that
+    were named and are wrong in none of the missions.
+    """
 
     system: str
     draw: int
@@ -77,8 +80,10 @@ def causes_questions(
             order = sorted(known)
             dice.shuffle(order)
             # Two treatments of one parameter would be one cause.
-            first = {parameters[treatment]: treatment for treatment in reversed(order)}
-            chosen = sorted(sorted(first.values(), key=order.index)[:causes])
+            first: dict[str, str] = {}
+            for treatment in order:
+                first.setdefault(parameters[treatment], treatment)
+            chosen = sorted([*first.values()][:causes])
             missions = [
                 folder
                 for treatment in chosen
